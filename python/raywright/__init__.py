@@ -1,5 +1,7 @@
 """Ray tracing for Python: exact hits from numpy arrays, and pictures that say how wrong they still are."""
 
+from __future__ import annotations
+
 from importlib import import_module
 from typing import TYPE_CHECKING
 

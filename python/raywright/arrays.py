@@ -1,5 +1,7 @@
 """Numbers as input: checked, converted, and refused with one clear line."""
 
+from __future__ import annotations
+
 import math
 import operator
 import sys

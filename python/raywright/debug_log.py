@@ -1,5 +1,7 @@
 """Debug messages for the logger "raywright"."""
 
+from __future__ import annotations
+
 import sys
 
 

@@ -1,5 +1,7 @@
 """Copies of descriptions, such as shapes, which keep their class, whatever its constructor takes."""
 
+from __future__ import annotations
+
 from functools import cached_property
 from typing import Any, TypeVar
 

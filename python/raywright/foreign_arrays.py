@@ -1,5 +1,7 @@
 """Arrays of numpy from those of other libraries, and one clear line for those that cannot be converted."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

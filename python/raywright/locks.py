@@ -1,12 +1,14 @@
 """Locks that a forked process does not wait for."""
 
+from __future__ import annotations
+
 import os
 import threading
 import weakref
 from collections.abc import Callable
 from types import TracebackType
 
-_all: "weakref.WeakSet[Lock]" = weakref.WeakSet()
+_all: weakref.WeakSet[Lock] = weakref.WeakSet()
 
 
 class Lock:

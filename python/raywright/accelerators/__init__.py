@@ -1,5 +1,7 @@
 """Choice of the structure that finds hits."""
 
+from __future__ import annotations
+
 from .._core import AcceleratorInfo
 from .brute import BruteForce
 from .bvh import BVH, Builder, Optimizer, Traversal, Volume

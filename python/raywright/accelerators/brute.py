@@ -1,5 +1,7 @@
 """No structure."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 

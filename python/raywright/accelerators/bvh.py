@@ -1,5 +1,7 @@
 """Bounding volume hierarchies."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 

@@ -1,5 +1,7 @@
 """All accelerators, and their names."""
 
+from __future__ import annotations
+
 from dataclasses import fields
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints

@@ -1,5 +1,7 @@
 """Structures that part space by planes."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal, get_args
 

@@ -1,5 +1,7 @@
 """Where pictures are taken from, a kind of camera a file."""
 
+from __future__ import annotations
+
 from .any_camera import AnyCamera
 from .any_camera import pixel_offsets as pixel_offsets
 from .fisheye import Fisheye

@@ -1,5 +1,7 @@
 """The base class of all cameras: a picture, a shutter, and rays."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

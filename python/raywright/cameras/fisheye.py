@@ -1,5 +1,7 @@
 """The camera that sees wide angles in a circle."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

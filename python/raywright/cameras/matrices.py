@@ -1,5 +1,7 @@
 """Where a camera stands, as matrices give it: those of scene files, and of computer vision."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np

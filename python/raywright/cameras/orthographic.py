@@ -1,5 +1,7 @@
 """The camera of parallel rays."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """The pinhole camera, given by an angle or by a matrix."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
 from typing import Any
@@ -124,7 +126,7 @@ class Camera(AnyCamera):
         pixel_centre: float = 0.0,
         end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
-    ) -> "Camera":
+    ) -> Camera:
         """Return the camera of computer vision: a point X is seen at the pixel ``K @ (R @ X + t)``.
 
         Parameters
@@ -172,7 +174,7 @@ class Camera(AnyCamera):
         return cls._at(of_extrinsics(R, t), {**lens, **others})
 
     @classmethod
-    def from_matrix(cls, to_world: ArrayLike, convention: str = "gltf", **others: Any) -> "Camera":
+    def from_matrix(cls, to_world: ArrayLike, convention: str = "gltf", **others: Any) -> Camera:
         """Return the camera at a matrix, as in `Pose.from_matrix`.
 
         Matrices that mirror are allowed, and mirror the picture.

@@ -1,5 +1,7 @@
 """Where a camera stands and how it is turned."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 

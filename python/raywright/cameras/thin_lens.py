@@ -1,5 +1,7 @@
 """The camera with a lens, which is in focus at one distance."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 

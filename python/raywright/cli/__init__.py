@@ -1,5 +1,7 @@
 """The shell command: pictures, measures and reports, a verb each."""
 
+from __future__ import annotations
+
 import argparse
 import os
 import sys

@@ -1,5 +1,7 @@
 """``raywright sky``, ``thickness``, ``visibility`` and ``lidar``: `raywright.measure` for mesh files."""
 
+from __future__ import annotations
+
 import argparse
 import sys
 from collections.abc import Callable, Sequence

@@ -1,5 +1,7 @@
 """Arguments shared by all subcommands."""
 
+from __future__ import annotations
+
 import argparse
 from collections.abc import Callable
 from math import isfinite

@@ -1,5 +1,7 @@
 """``raywright demo``, ``render`` and ``view``."""
 
+from __future__ import annotations
+
 import argparse
 from typing import Any
 

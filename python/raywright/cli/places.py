@@ -1,5 +1,7 @@
 """Where a measure is taken: the faces or the vertices of a mesh, or points of a file."""
 
+from __future__ import annotations
+
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass

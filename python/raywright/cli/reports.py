@@ -1,5 +1,7 @@
 """``raywright report``."""
 
+from __future__ import annotations
+
 import argparse
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Results of a measurement as a file: a table, arrays, or a mesh with values."""
 
+from __future__ import annotations
+
 import csv
 import sys
 from collections.abc import Mapping

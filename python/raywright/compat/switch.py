@@ -1,5 +1,7 @@
 """Other libraries' classes and functions replaced by raywright's, and put back."""
 
+from __future__ import annotations
+
 from types import TracebackType
 from typing import Any, NamedTuple
 
@@ -32,7 +34,7 @@ class Switch:
                 return replaced.value
         return getattr(owner, name)
 
-    def on(self, replacements: list[Replacement]) -> "Installation":
+    def on(self, replacements: list[Replacement]) -> Installation:
         """Put the replacements in force, unless that is done already."""
         if self.is_on:
             return Installation(self, False)
@@ -70,7 +72,7 @@ class Installation:
         self._switch = switch
         self._is_first = is_first
 
-    def __enter__(self) -> "Installation":
+    def __enter__(self) -> Installation:
         return self
 
     def __exit__(

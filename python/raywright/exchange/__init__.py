@@ -1,5 +1,7 @@
 """Diffuse exchange between surfaces: view factors, radiosity, radiative heat transfer."""
 
+from __future__ import annotations
+
 from .radiative import RadiativeExchange
 from .solution import RadiositySolution, RadiosityStep
 from .view_factors import ViewFactors

@@ -1,5 +1,7 @@
 """Coincident faces: they are one surface, and the first listed counts."""
 
+from __future__ import annotations
+
 import warnings
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -94,7 +96,7 @@ class Covered:
         parts: dict[int, list[tuple[int, float]]],
         own: Floats,
         turned: set[int] | frozenset[int] = frozenset(),
-    ) -> "Covered":
+    ) -> Covered:
         """Return faces by the areas that each has in common with others, and the areas of all faces."""
         faces = sorted(parts)
         sizes = [len(parts[face]) for face in faces]

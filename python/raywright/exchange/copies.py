@@ -1,5 +1,7 @@
 """Copies of instances as shapes of their own, each face of which exchanges light for itself."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """Interpolation from patches to their corners, for smooth display."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

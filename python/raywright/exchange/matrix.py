@@ -1,5 +1,7 @@
 """Radiosity by the matrix of view factors."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..scene.instance import AnyShape

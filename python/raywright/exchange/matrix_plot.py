@@ -1,5 +1,7 @@
 """A matrix of view factors as a picture."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

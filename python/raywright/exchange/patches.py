@@ -1,5 +1,7 @@
 """Patches: the faces of a scene, cut into pieces that exchange light."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The radiosity problem, and the solution from replicates."""
 
+from __future__ import annotations
+
 import time
 from dataclasses import dataclass, field
 from typing import Any
@@ -58,7 +60,7 @@ class Problem:
         lamps: Scene | None,
         looks: tuple[Floats, Floats] | None = None,
         covered: Covered = NOTHING,
-    ) -> "Problem":
+    ) -> Problem:
         """Return that of a scene, or of one that is laid out, lit by the lights of another without shapes.
 
         `looks` are emission and reflectance in place of the scene's own, and `covered` the coincident faces

@@ -1,5 +1,7 @@
 """Radiative exchange of grey surfaces: how much heat each gains or loses."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Literal, TypeAlias, get_args

@@ -1,5 +1,7 @@
 """Radiosity of diffuse scenes."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator
 from typing import Any, Literal, get_args, overload
 

@@ -1,5 +1,7 @@
 """Reciprocity of sampled view factors: the exchange of two faces is made one number."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Radiosity by shooting: number of rays, iterations, and the stopping rule."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Iterator
 

@@ -1,5 +1,7 @@
 """What radiosity finds."""
 
+from __future__ import annotations
+
 import os
 from dataclasses import dataclass, fields
 from functools import cached_property
@@ -185,7 +187,7 @@ class RadiositySolution(Tabular):
 
     def to_mesh(
         self, exposure: float | None = None, side: Literal["front", "back"] = "front"
-    ) -> "trimesh.Trimesh":
+    ) -> trimesh.Trimesh:
         """Return a mesh of the patches with their light as vertex colors.
 
         Each patch has corners of its own, so that patches that meet at an edge keep their colors. Shapes that

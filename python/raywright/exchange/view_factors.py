@@ -1,5 +1,7 @@
 """View factors: which share of the light that leaves one surface comes to another."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
@@ -74,7 +76,7 @@ class ViewFactors(Tabular):
     ([[0.0, 0.199825], [0.199825, 0.0]], [0.800175, 0.800175])
     """
 
-    matrix: "NDArray[np.float64] | csr_array"
+    matrix: NDArray[np.float64] | csr_array
     areas: NDArray[np.float64]
     per: Per
     closed: int
@@ -88,7 +90,7 @@ class ViewFactors(Tabular):
     _closed: NDArray[np.bool_]
 
     @cached_property
-    def standard_error(self) -> "NDArray[np.float64] | csr_array":
+    def standard_error(self) -> NDArray[np.float64] | csr_array:
         """The standard error of each view factor, as `matrix`; 0 where it is in closed form.
 
         Sparse ones have no entry where no ray from either face has met the other: of n rays the factor is

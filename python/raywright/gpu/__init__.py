@@ -4,6 +4,8 @@ Needs the extra ``raywright[gpu]``, PyPI's ``wgpu``. A kernel in float32 finds c
 with a certain bound on every error, and the core decides among them, exactly.
 """
 
+from __future__ import annotations
+
 from .device import Gpu
 from .scene_buffers import GpuScene
 from .stats import GpuStats

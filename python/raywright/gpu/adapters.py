@@ -1,5 +1,7 @@
 """Choice of the device among those that wgpu offers."""
 
+from __future__ import annotations
+
 from typing import Any
 
 from .wgpu_api import imported_wgpu

@@ -1,5 +1,7 @@
 """A test whether a device computes as WGSL promises."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """A graphics processor."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

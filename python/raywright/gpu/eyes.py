@@ -1,5 +1,7 @@
 """Cameras as `paths.wgsl` knows them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Tables of the energy that GGX facets lose in one scattering."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np

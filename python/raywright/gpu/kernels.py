@@ -1,5 +1,7 @@
 """Kernels on a device: their text put together, buffers, and one dispatch after the other."""
 
+from __future__ import annotations
+
 from importlib.resources import files
 from typing import Any
 

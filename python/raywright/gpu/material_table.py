@@ -1,5 +1,7 @@
 """Materials as rows of an array, with their tables and pictures."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

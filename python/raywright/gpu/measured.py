@@ -1,5 +1,7 @@
 """Reflectances of metals as tables: measured from the core, at a plate of each."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np

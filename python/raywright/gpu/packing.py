@@ -4,6 +4,8 @@ All numbers are little-endian, without gaps, and lengths in box units (see `GpuA
 are reported by name: `LeftError`.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,5 +1,7 @@
 """A scene on a graphics processor."""
 
+from __future__ import annotations
+
 import warnings
 from types import TracebackType
 from typing import Any
@@ -189,7 +191,7 @@ class GpuScene:
             before = (start, stop, work)
         return told
 
-    def __enter__(self) -> "GpuScene":
+    def __enter__(self) -> GpuScene:
         return self
 
     def __exit__(

@@ -1,5 +1,7 @@
 """Statistics: rays answered by the device, and rays left to the CPU."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 

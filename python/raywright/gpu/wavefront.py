@@ -1,5 +1,7 @@
 """Path tracing on a device: kernels by turns, and sums of samples back."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias

@@ -4,6 +4,8 @@ wgpu is below version 1, and each release may rename things. The extra ``raywrig
 versions; if a release lacks something, an error names it before a device is opened.
 """
 
+from __future__ import annotations
+
 import importlib
 from collections.abc import Iterator
 from contextlib import contextmanager

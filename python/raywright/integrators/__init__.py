@@ -1,5 +1,7 @@
 """Integrators: estimators of the radiance along rays."""
 
+from __future__ import annotations
+
 from typing import TypeAlias
 
 from .ambient_occlusion import AmbientOcclusion

@@ -1,5 +1,7 @@
 """Ambient occlusion."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 

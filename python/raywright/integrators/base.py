@@ -1,5 +1,7 @@
 """What all integrators have in common."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING
 
@@ -40,7 +42,7 @@ class Integrator(ABC):
     """
 
     @abstractmethod
-    def radiance(self, scene: "Scene", rays: Rays, rng: Rng) -> NDArray[np.float64]:
+    def radiance(self, scene: Scene, rays: Rays, rng: Rng) -> NDArray[np.float64]:
         """Return the radiance that arrives along each ray.
 
         Parameters

@@ -1,5 +1,7 @@
 """Beam tracing."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Bidirectional path tracing."""
 
+from __future__ import annotations
+
 from dataclasses import KW_ONLY, dataclass
 
 from ..arrays import integer, positive

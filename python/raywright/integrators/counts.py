@@ -1,5 +1,7 @@
 """Numbers that integrators have in common."""
 
+from __future__ import annotations
+
 from ..arrays import integer
 
 MOST_SAMPLES = 1024

@@ -1,5 +1,7 @@
 """Direct light."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from . import counts

@@ -1,5 +1,7 @@
 """Light tracing."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from . import counts

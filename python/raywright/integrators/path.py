@@ -1,5 +1,7 @@
 """Path tracing."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..arrays import integer

@@ -1,5 +1,7 @@
 """Photon mapping."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -18,7 +20,7 @@ def _photons(count: int) -> int:
     return integer("photons", count, 1, counts.MOST_PHOTONS)
 
 
-def _settle(of: "PhotonMap | ProgressivePhotonMap") -> None:
+def _settle(of: PhotonMap | ProgressivePhotonMap) -> None:
     """Check the common arguments, and settle their types."""
     settled = {
         "radius": None if of.radius is None else positive("radius", of.radius),

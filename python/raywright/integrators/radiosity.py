@@ -1,5 +1,7 @@
 """Pictures of a radiosity solution."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

@@ -1,5 +1,7 @@
 """Random numbers of a batch of samples."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

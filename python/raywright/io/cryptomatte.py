@@ -1,5 +1,7 @@
 """Layers of the shapes that cover a pixel, for compositing: Cryptomatte 1.2 (Friedman and Jones, 2015)."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 
 import numpy as np

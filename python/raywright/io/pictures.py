@@ -1,5 +1,7 @@
 """Picture files: formats, checks before writing, and reading."""
 
+from __future__ import annotations
+
 import errno
 import io
 from os import PathLike

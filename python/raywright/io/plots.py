@@ -1,5 +1,7 @@
 """Where a plot is drawn: on axes, in a figure of its own, or to a file."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from os import PathLike
 from typing import Any

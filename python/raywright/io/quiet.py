@@ -1,5 +1,7 @@
 """Silence for other libraries while they read: our own errors have the message."""
 
+from __future__ import annotations
+
 import sys
 import warnings
 from collections.abc import Iterator

@@ -1,5 +1,7 @@
 """Radiance's picture files: .hdr, of four bytes a pixel, three mantissas and an exponent they share."""
 
+from __future__ import annotations
+
 import re
 from pathlib import Path
 

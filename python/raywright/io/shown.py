@@ -1,5 +1,7 @@
 """Pictures for the eye: 8 bits with the sRGB transfer, as arrays and as files."""
 
+from __future__ import annotations
+
 import io
 from typing import Any
 

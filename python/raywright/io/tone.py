@@ -1,5 +1,7 @@
 """Tone mapping: from unbounded radiance to displayable values."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Values on surfaces, at points and in pictures, drawn by matplotlib with a color bar."""
 
+from __future__ import annotations
+
 from typing import Any, Literal, TypeAlias
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Lights: light sources without surface, environments, and emission of surfaces."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import cast
 
@@ -38,8 +40,8 @@ def lights(value: object) -> tuple[Light, ...]:
 
 
 def environments(
-    value: "Environment | Sequence[Environment] | ArrayLike | None",
-) -> "Environment | tuple[Environment, ...] | None":
+    value: Environment | Sequence[Environment] | ArrayLike | None,
+) -> Environment | tuple[Environment, ...] | None:
     """Return what surrounds a scene: numbers as a constant radiance, and several environments as a tuple."""
     if value is None or isinstance(value, Environment):
         return value

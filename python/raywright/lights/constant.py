@@ -1,5 +1,7 @@
 """The same light from everywhere."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

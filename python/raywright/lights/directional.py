@@ -1,5 +1,7 @@
 """Light from a single direction."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """How surfaces shine."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, TypeAlias, Union
 

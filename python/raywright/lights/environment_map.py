@@ -1,5 +1,7 @@
 """A picture of all that surrounds a scene."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from os import PathLike
 

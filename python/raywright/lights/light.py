@@ -1,5 +1,7 @@
 """What all lights, and all environments, have in common."""
 
+from __future__ import annotations
+
 
 class Light:
     """A light without a surface, at a place. Its subclasses say how much it sends in which direction."""

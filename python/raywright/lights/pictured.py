@@ -1,5 +1,7 @@
 """Storage and comparison of lights with pictures."""
 
+from __future__ import annotations
+
 from dataclasses import fields
 from os import PathLike
 from typing import Any

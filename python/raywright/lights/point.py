@@ -1,5 +1,7 @@
 """A point that shines evenly."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

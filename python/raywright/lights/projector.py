@@ -1,5 +1,7 @@
 """A picture that is thrown."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from os import PathLike
 

@@ -1,5 +1,7 @@
 """A point that shines into a cone."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 

@@ -1,5 +1,7 @@
 """Where the sun stands."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from datetime import datetime, timezone
 

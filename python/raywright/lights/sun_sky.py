@@ -1,5 +1,7 @@
 """Daylight."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import overload
@@ -108,7 +110,7 @@ class SunSky(Environment):
         north: ArrayLike = (0.0, 0.0, -1.0),
         sun_scale: float = 1.0,
         sky_scale: float = 1.0,
-    ) -> "SunSky": ...
+    ) -> SunSky: ...
 
     @overload
     @classmethod
@@ -123,7 +125,7 @@ class SunSky(Environment):
         north: ArrayLike = (0.0, 0.0, -1.0),
         sun_scale: float = 1.0,
         sky_scale: float = 1.0,
-    ) -> "tuple[SunSky, ...]": ...
+    ) -> tuple[SunSky, ...]: ...
 
     @classmethod
     def at(
@@ -137,7 +139,7 @@ class SunSky(Environment):
         north: ArrayLike = (0.0, 0.0, -1.0),
         sun_scale: float = 1.0,
         sky_scale: float = 1.0,
-    ) -> "SunSky | tuple[SunSky, ...]":
+    ) -> SunSky | tuple[SunSky, ...]:
         """Return the daylight at a time and place, or at each of several times.
 
         The position of the sun is that of the low-precision formulas of the Astronomical Almanac, to 0.01°

@@ -1,5 +1,7 @@
 """Times, however they are written."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from datetime import datetime, timezone
 from typing import TypeAlias, Union

@@ -1,5 +1,7 @@
 """Materials: how surfaces scatter light."""
 
+from __future__ import annotations
+
 from .blinn_phong import BlinnPhong
 from .bump_map import BumpMap
 from .conductor import Conductor, MetalIndex, metal_index, metals

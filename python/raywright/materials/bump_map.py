@@ -1,5 +1,7 @@
 """Bumps."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..arrays import number
@@ -48,7 +50,7 @@ class BumpMap(Material):
     def __init__(
         self,
         material: Material,
-        height: "float | Texture",
+        height: float | Texture,
         scale: float = 1.0,
     ) -> None:
         self._set(

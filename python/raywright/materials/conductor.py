@@ -1,5 +1,7 @@
 """Metals."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -89,8 +91,8 @@ class Conductor(Material):
         self,
         metal: str | None = None,
         *,
-        eta: "ArrayLike | Texture | None" = None,
-        k: "ArrayLike | Texture | None" = None,
+        eta: ArrayLike | Texture | None = None,
+        k: ArrayLike | Texture | None = None,
         roughness: Any = None,
         alpha: Any = None,
         distribution: str = "ggx",

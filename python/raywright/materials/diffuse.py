@@ -1,5 +1,7 @@
 """Matt surfaces."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

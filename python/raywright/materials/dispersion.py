@@ -1,5 +1,7 @@
 """Dispersion: the index of refraction by wavelength."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
@@ -125,7 +127,7 @@ class Cauchy(Dispersion):
         object.__setattr__(self, "C", number("C", self.C))
 
     @classmethod
-    def from_abbe(cls, nd: float, Vd: float) -> "Cauchy":
+    def from_abbe(cls, nd: float, Vd: float) -> Cauchy:
         """Return the one that has this index at the line d and this number of Abbe.
 
         Parameters

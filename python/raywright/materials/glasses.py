@@ -1,5 +1,7 @@
 """Glass, crystals and water by measured indices of refraction."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 
 from .dispersion import Sellmeier

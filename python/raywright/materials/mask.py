@@ -1,5 +1,7 @@
 """Holes."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..textures.texture import Number, Texture, scalar
@@ -47,7 +49,7 @@ class Mask(Material):
     def __init__(
         self,
         material: Material,
-        opacity: "float | Texture" = 0.5,
+        opacity: float | Texture = 0.5,
     ) -> None:
         self._set(
             material=checked("material", material),

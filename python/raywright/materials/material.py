@@ -1,5 +1,7 @@
 """The base class of materials."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 

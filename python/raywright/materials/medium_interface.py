@@ -1,5 +1,7 @@
 """The end of a medium that has no surface."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..arrays import integer

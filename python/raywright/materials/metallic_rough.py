@@ -1,5 +1,7 @@
 """The model of glTF."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
@@ -54,8 +56,8 @@ class MetallicRough(Material):
     def __init__(
         self,
         base_color: ArrayLike | Texture = 1.0,
-        metallic: "float | Texture" = 1.0,
-        roughness: "float | Texture" = 1.0,
+        metallic: float | Texture = 1.0,
+        roughness: float | Texture = 1.0,
     ) -> None:
         self._set(
             base_color=value("base_color", base_color, most=1.0),

@@ -1,5 +1,7 @@
 """Two materials at once."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..textures.texture import Number, Texture, scalar
@@ -46,7 +48,7 @@ class Mix(Material):
         self,
         a: Material,
         b: Material,
-        amount: "float | Texture" = 0.5,
+        amount: float | Texture = 0.5,
     ) -> None:
         self._set(
             a=material("a", a),

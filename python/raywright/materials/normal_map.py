@@ -1,5 +1,7 @@
 """Normals from a picture."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

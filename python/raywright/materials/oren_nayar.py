@@ -1,5 +1,7 @@
 """Rough matt surfaces."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
@@ -46,7 +48,7 @@ class OrenNayar(Material):
     def __init__(
         self,
         reflectance: ArrayLike | Texture = 0.5,
-        roughness: "float | Texture" = 0.5,
+        roughness: float | Texture = 0.5,
     ) -> None:
         self._set(
             reflectance=value("reflectance", reflectance, most=1.0),

@@ -1,5 +1,7 @@
 """Phong's model."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
@@ -55,8 +57,8 @@ class Phong(Material):
         self,
         diffuse: ArrayLike | Texture = 0.5,
         specular: ArrayLike | Texture = 0.25,
-        exponent: "float | Texture" = 32.0,
-        ambient: "ArrayLike | Texture | None" = None,
+        exponent: float | Texture = 32.0,
+        ambient: ArrayLike | Texture | None = None,
     ) -> None:
         matt, shiny = shares(diffuse, specular)
         self._set(

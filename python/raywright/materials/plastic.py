@@ -1,5 +1,7 @@
 """Plastic, glaze, varnish."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

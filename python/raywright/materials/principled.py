@@ -1,5 +1,7 @@
 """The principled models of the film studios."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
@@ -98,18 +100,18 @@ class Principled(Material):
     def __init__(
         self,
         base_color: ArrayLike | Texture = 0.5,
-        roughness: "float | Texture" = 0.5,
-        metallic: "float | Texture" = 0.0,
+        roughness: float | Texture = 0.5,
+        metallic: float | Texture = 0.0,
         *,
         ior: float | Dispersion = 1.5,
-        transmission: "float | Texture" = 0.0,
-        anisotropic: "float | Texture" = 0.0,
-        specular_tint: "float | Texture" = 0.0,
-        sheen: "float | Texture" = 0.0,
-        sheen_tint: "float | Texture" = 0.0,
-        flatness: "float | Texture" = 0.0,
-        clearcoat: "float | Texture" = 0.0,
-        clearcoat_gloss: "float | Texture" = 0.0,
+        transmission: float | Texture = 0.0,
+        anisotropic: float | Texture = 0.0,
+        specular_tint: float | Texture = 0.0,
+        sheen: float | Texture = 0.0,
+        sheen_tint: float | Texture = 0.0,
+        flatness: float | Texture = 0.0,
+        clearcoat: float | Texture = 0.0,
+        clearcoat_gloss: float | Texture = 0.0,
         priority: int = 0,
         energy_conserving: bool = True,
     ) -> None:
@@ -184,16 +186,16 @@ class PrincipledThin(Material):
     def __init__(
         self,
         base_color: ArrayLike | Texture = 0.5,
-        roughness: "float | Texture" = 0.5,
+        roughness: float | Texture = 0.5,
         *,
         ior: float = 1.5,
-        transmission: "float | Texture" = 0.0,
-        diffuse_transmission: "float | Texture" = 0.0,
-        anisotropic: "float | Texture" = 0.0,
-        specular_tint: "float | Texture" = 0.0,
-        sheen: "float | Texture" = 0.0,
-        sheen_tint: "float | Texture" = 0.0,
-        flatness: "float | Texture" = 0.0,
+        transmission: float | Texture = 0.0,
+        diffuse_transmission: float | Texture = 0.0,
+        anisotropic: float | Texture = 0.0,
+        specular_tint: float | Texture = 0.0,
+        sheen: float | Texture = 0.0,
+        sheen_tint: float | Texture = 0.0,
+        flatness: float | Texture = 0.0,
         energy_conserving: bool = True,
     ) -> None:
         given = locals()

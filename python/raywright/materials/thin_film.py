@@ -1,5 +1,7 @@
 """Films of the colours of their thickness."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 
@@ -142,7 +144,7 @@ class ThinFilm(_Film):
 
     def __init__(
         self,
-        thickness: "float | Texture",
+        thickness: float | Texture,
         ior: float = 1.33,
         *,
         base: Dielectric | Conductor,
@@ -214,7 +216,7 @@ class SoapFilm(_Film):
 
     def __init__(
         self,
-        thickness: "float | Texture",
+        thickness: float | Texture,
         ior: float = 1.33,
     ) -> None:
         self._set(

@@ -1,5 +1,7 @@
 """Glass with a colour at its surface."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

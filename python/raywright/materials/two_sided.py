@@ -1,5 +1,7 @@
 """One material on the front and another on the back."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from .material import Material, material

@@ -1,5 +1,7 @@
 """Measurements with rays: sky and sun, laser scans, lines of sight, wall thickness and cross sections."""
 
+from __future__ import annotations
+
 from .cracks import Topology, topology
 from .cuts import CrossSection, cross_section
 from .hemispheres import Estimate, ambient_visibility, sky_view

@@ -1,5 +1,7 @@
 """Topology of meshes: defects that keep them from being closed."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

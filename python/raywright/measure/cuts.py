@@ -1,5 +1,7 @@
 """Cross sections."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
 

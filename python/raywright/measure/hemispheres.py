@@ -1,5 +1,7 @@
 """Sky view factors and ambient visibility: unobstructed shares of the hemisphere."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Any

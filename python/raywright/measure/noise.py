@@ -1,5 +1,7 @@
 """Random numbers of beams: functions of seed, beam, return and dimension alone."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Where it is measured: points on surfaces, and rays that leave them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -155,7 +157,7 @@ class Touching:
     away: Floats
     normal: Floats
 
-    def spread(self, shape: tuple[int, ...], lead: tuple[int, ...]) -> "Touching":
+    def spread(self, shape: tuple[int, ...], lead: tuple[int, ...]) -> Touching:
         """Return the same of points of leading shape `shape`, broadcast to another."""
         numbers = (np.broadcast_to(part.reshape(shape), lead) for part in (self.error, self.distance))
         each = (np.broadcast_to(part.reshape(*shape, 3), (*lead, 3)) for part in (self.away, self.normal))

@@ -1,5 +1,7 @@
 """Values on surfaces and at points, drawn by matplotlib."""
 
+from __future__ import annotations
+
 from os import PathLike
 from typing import Any, ClassVar, NamedTuple
 

@@ -1,5 +1,7 @@
 """Laser scanners: where they stand, and which beams they send."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 

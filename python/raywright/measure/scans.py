@@ -1,5 +1,7 @@
 """Simulated laser scans."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias, get_args

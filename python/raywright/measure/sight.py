@@ -1,5 +1,7 @@
 """Lines of sight between points."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Solar exposure of surfaces."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

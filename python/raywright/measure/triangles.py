@@ -1,5 +1,7 @@
 """All triangles of a scene where they stand."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Wall thickness."""
 
+from __future__ import annotations
+
 from typing import Literal, get_args
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Waveforms of pulses, and the peaks in them."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Participating media: smoke, haze, milk, clouds."""
 
+from __future__ import annotations
+
 from .grid import GridMedium
 from .homogeneous import Homogeneous
 from .medium import Medium

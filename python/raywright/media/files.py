@@ -1,5 +1,7 @@
 """Numbers on grids from files."""
 
+from __future__ import annotations
+
 import struct
 from collections.abc import Mapping
 from os import PathLike, fspath

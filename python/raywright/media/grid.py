@@ -1,5 +1,7 @@
 """A medium that differs from place to place."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 from os import PathLike
 from typing import Any, Literal, TypeAlias, get_args
@@ -145,7 +147,7 @@ class GridMedium(Medium):
         *,
         density: str = "density",
         **arguments: Any,
-    ) -> "GridMedium":
+    ) -> GridMedium:
         """Read the density from a file, with the other arguments of `GridMedium`.
 
         Parameters

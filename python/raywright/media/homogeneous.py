@@ -1,5 +1,7 @@
 """A homogeneous medium: the same everywhere."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """The base class of media."""
 
+from __future__ import annotations
+
 from typing import Any
 
 

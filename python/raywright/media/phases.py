@@ -1,5 +1,7 @@
 """Into which directions media scatter light."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 

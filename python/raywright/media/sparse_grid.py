@@ -1,5 +1,7 @@
 """Numbers on a grid that is mostly empty."""
 
+from __future__ import annotations
+
 import operator
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Protocol, final
@@ -87,7 +89,7 @@ class SparseGrid:
                 yield begins, np.ascontiguousarray(found, np.float32)
 
     @classmethod
-    def of(cls, numbers: "ArrayLike | Sliced") -> "SparseGrid":
+    def of(cls, numbers: ArrayLike | Sliced) -> SparseGrid:
         """Return the sparse grid of an array, read a few planes at a time.
 
         Parameters
@@ -130,7 +132,7 @@ class SparseGrid:
         return self._blocks.bytes()
 
     @property
-    def parts(self) -> "Iterator[tuple[tuple[int, int, int], NDArray[np.float32]]]":
+    def parts(self) -> Iterator[tuple[tuple[int, int, int], NDArray[np.float32]]]:
         """Origins of the blocks that are not all 0, with their numbers."""
         for low, high in self._blocks.kept().tolist():
             size = [b - a for a, b in zip(low, high, strict=True)]

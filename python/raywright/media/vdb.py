@@ -4,6 +4,8 @@ A tree has a root, two levels of nodes of 32³ and 16³ children, and leaves of 
 High-Resolution Sparse Volumes with Dynamic Topology", 2013). A node with one value throughout is a tile.
 """
 
+from __future__ import annotations
+
 import importlib
 import struct
 import zlib
@@ -78,7 +80,7 @@ def read_vdb(path: Path, names: tuple[str, ...]) -> tuple[dict[str, SparseGrid],
     return grids, {"bounds": corners, "transform": first}
 
 
-def _grids(file: "_Reader", names: tuple[str, ...]) -> dict[str, _Grid]:
+def _grids(file: _Reader, names: tuple[str, ...]) -> dict[str, _Grid]:
     if file.one("q") != _MAGIC:
         raise ValueError("it does not begin as an OpenVDB file does")
     version = file.one("I")
@@ -108,7 +110,7 @@ def _grids(file: "_Reader", names: tuple[str, ...]) -> dict[str, _Grid]:
     return found
 
 
-def _grid(file: "_Reader", is_half: bool) -> _Grid:
+def _grid(file: _Reader, is_half: bool) -> _Grid:
     compression = file.one("I")
     _skip_metadata(file)
     matrix = _transform(file)
@@ -135,7 +137,7 @@ def _grid(file: "_Reader", is_half: bool) -> _Grid:
 
 
 def _node(
-    file: "_Reader", numbers: "_Numbers", origin: Any, level: int, leaves: list[Any], parts: list[Any]
+    file: _Reader, numbers: _Numbers, origin: Any, level: int, leaves: list[Any], parts: list[Any]
 ) -> None:
     """Read what is in a node, but for the numbers of its leaves: those come later."""
     power, side = _LEVELS[level]
@@ -168,7 +170,7 @@ def _bits(mask: bytes) -> NDArray[np.bool_]:
     return np.unpackbits(np.frombuffer(mask, np.uint8), bitorder="little").astype(bool)
 
 
-def _transform(file: "_Reader") -> NDArray[np.float64]:
+def _transform(file: _Reader) -> NDArray[np.float64]:
     """Return the matrix that takes the places of numbers to the world."""
     kind = file.text()
     matrix = np.eye(4)
@@ -187,7 +189,7 @@ def _transform(file: "_Reader") -> NDArray[np.float64]:
     return matrix
 
 
-def _skip_metadata(file: "_Reader") -> None:
+def _skip_metadata(file: _Reader) -> None:
     for _ in range(file.one("I")):
         for _ in range(2):
             file.text()

@@ -1,5 +1,7 @@
 """Meshes from pairs of arrays or tensors, as PyTorch3D and others have them."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Files that mesh files name, found in their folder."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 

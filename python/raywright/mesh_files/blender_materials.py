@@ -1,5 +1,7 @@
 """Materials of Blender, by the shader that their nodes end in."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

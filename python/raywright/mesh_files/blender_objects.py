@@ -1,5 +1,7 @@
 """Meshes from the objects of Blender."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

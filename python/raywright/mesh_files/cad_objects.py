@@ -4,6 +4,8 @@ Each face of a shape becomes triangles with corners of its own; those along an e
 in the same places. `Mesh.cells` are the faces of the shape, in its order.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Faces of the cells of finite elements, numbered as VTK and meshio number them."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from typing import Any, TypeAlias
 

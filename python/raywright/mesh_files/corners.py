@@ -1,5 +1,7 @@
 """Corners of faces share a vertex if all of their attributes are equal."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

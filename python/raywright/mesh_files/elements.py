@@ -1,5 +1,7 @@
 """Elements of PLY and OFF files, of text and of bytes: numbers and lists of numbers."""
 
+from __future__ import annotations
+
 import struct
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias

@@ -1,5 +1,7 @@
 """Appearance of a mesh, from a file or an object of trimesh."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np

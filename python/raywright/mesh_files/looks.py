@@ -1,5 +1,7 @@
 """Materials, emission and colors from trimesh's visuals."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

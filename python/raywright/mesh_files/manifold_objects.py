@@ -1,5 +1,7 @@
 """Meshes from the objects of manifold3d."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Meshes from files."""
 
+from __future__ import annotations
+
 import errno
 from collections.abc import Callable
 from os import PathLike

@@ -1,5 +1,7 @@
 """Meshes from meshio's objects."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

@@ -3,6 +3,8 @@
 They are read here since trimesh reads text by lines, takes polygons for fans, and knows no normals.
 """
 
+from __future__ import annotations
+
 import re
 from pathlib import Path
 from typing import Any, NamedTuple

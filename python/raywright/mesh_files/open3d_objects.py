@@ -1,5 +1,7 @@
 """Meshes from the objects of Open3D."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -1,5 +1,7 @@
 """The material of glTF 2.0, made of this library's materials: metal and matt, clear, cut out, and shining."""
 
+from __future__ import annotations
+
 import math
 from typing import Any, NamedTuple
 

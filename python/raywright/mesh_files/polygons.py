@@ -1,5 +1,7 @@
 """Meshes of polygons, whose values stay those of the polygons."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Any
 

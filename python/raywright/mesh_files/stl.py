@@ -3,6 +3,8 @@
 They are read here since trimesh refuses what has bytes behind its end, and text whose lines end otherwise.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator
 from pathlib import Path

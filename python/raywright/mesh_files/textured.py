@@ -1,5 +1,7 @@
 """Meshes with textures: coordinates of corners, and materials of faces."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Text of mesh files as numbers, whatever stands between them."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Sequence
 

@@ -1,5 +1,7 @@
 """Polygons of mesh files as triangles."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

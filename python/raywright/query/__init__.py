@@ -1,5 +1,7 @@
 """Queries of rays and points, and their results."""
 
+from __future__ import annotations
+
 from .all_hits import AllHits
 from .cones import ConeCoverage, ConeFaces
 from .gpu_arrays import GpuArrays

@@ -1,5 +1,7 @@
 """Every hit of rays."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -110,7 +112,7 @@ class AllHits(SurfacePoints):
         vars(first).update(_compiled=self._compiled, _rays=self._rays)
         return first
 
-    def __getitem__(self, index: Any) -> "AllHits":
+    def __getitem__(self, index: Any) -> AllHits:
         """Return all hits of the rays at some places of the leading shape, which is indexed as arrays are."""
         by_ray = ("ray_splits", "ray", "count", "first", "shape")
         own = {name: v for name, v in vars(self).items() if name not in by_ray}
@@ -125,7 +127,7 @@ class AllHits(SurfacePoints):
             splits, own = begins - begins[0], rows.cut(own, slice(begins[0], begins[-1]))
         return chosen(AllHits, self, {**own, "ray_splits": sealed(splits), "shape": rays.shape}, rays)
 
-    def __iter__(self) -> "Iterator[AllHits]":
+    def __iter__(self) -> Iterator[AllHits]:
         return (self[i] for i in range(len(self)))
 
     def _first_rows(self, count: int) -> tuple[int, dict[str, NDArray[Any]]]:

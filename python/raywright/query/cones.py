@@ -1,5 +1,7 @@
 """Faces in solid cones."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple, TypeAlias

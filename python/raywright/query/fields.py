@@ -1,5 +1,7 @@
 """Which parts of hits are asked for, and the arrays that they are written to."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """A scene's tree and triangles as arrays without pointers."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

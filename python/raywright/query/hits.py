@@ -1,5 +1,7 @@
 """What rays hit."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -292,12 +294,12 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         # Where hits know their points by their rays, and the scene is gone, those are of no use.
         return restored, (type(self), kept, self._more())
 
-    def __copy__(self) -> "SurfacePoints":
+    def __copy__(self) -> SurfacePoints:
         copy = type(self).__new__(type(self))
         vars(copy).update(vars(self))
         return copy
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "SurfacePoints":
+    def __deepcopy__(self, memo: dict[int, Any]) -> SurfacePoints:
         # The compiled scene never changes, so copies share it; `out` may write to the arrays.
         copy = restored(type(self), rows.copied(vars(self), memo), {})
         vars(copy).update(_compiled=self._compiled, _rays=self._rays)
@@ -365,7 +367,7 @@ class Hits(SurfacePoints):
         fields: tuple[str, ...],
         compiled: _core.CompiledScene | None,
         rays: tuple[Any, ...] | None,
-    ) -> "Hits":
+    ) -> Hits:
         """Tell of these hits no more than some parts, forget what was worked out of others, and return it."""
         self.__dict__.clear()
         self.__dict__.update(parts, _fields=fields, _compiled=compiled, _rays=rays)
@@ -411,11 +413,11 @@ class Hits(SurfacePoints):
         """Leading shape of the rays."""
         return _lead(vars(self))
 
-    def __getitem__(self, index: Any) -> "Hits":
+    def __getitem__(self, index: Any) -> Hits:
         """Return the hits at some places of the leading shape, which is indexed as arrays are."""
         return one_or_some(Hits, self, index)
 
-    def __iter__(self) -> "Iterator[Hits]":
+    def __iter__(self) -> Iterator[Hits]:
         return (self[i] for i in range(len(self)))
 
     def __len__(self) -> int:
@@ -506,11 +508,11 @@ class ClosestPoints(SurfacePoints):
         """Leading shape of the points."""
         return self.distance.shape
 
-    def __getitem__(self, index: Any) -> "ClosestPoints":
+    def __getitem__(self, index: Any) -> ClosestPoints:
         """Return the closest points at some places of the leading shape, which is indexed as arrays are."""
         return one_or_some(ClosestPoints, self, index)
 
-    def __iter__(self) -> "Iterator[ClosestPoints]":
+    def __iter__(self) -> Iterator[ClosestPoints]:
         return (self[i] for i in range(len(self)))
 
     def __len__(self) -> int:

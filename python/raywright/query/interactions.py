@@ -1,5 +1,7 @@
 """Surface interactions of ray batches, for integrators written in Python."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Protocol
@@ -66,7 +68,7 @@ class Rays:
     def __len__(self) -> int:
         return len(self.directions)
 
-    def __getitem__(self, which: Any) -> "Rays":
+    def __getitem__(self, which: Any) -> Rays:
         return Rays(self.origins[which], self.directions[which], self.time[which])
 
     def __repr__(self) -> str:
@@ -219,7 +221,7 @@ class Interactions:
     def __len__(self) -> int:
         return len(self._core)
 
-    def __getitem__(self, which: ArrayLike) -> "Interactions":
+    def __getitem__(self, which: ArrayLike) -> Interactions:
         index = np.asarray(which)
         if index.dtype == np.bool_:
             if index.shape != (len(self),):
@@ -421,7 +423,7 @@ class Interactions:
         )
         return LightSamples(direction, weight, pdf, (origins, ways, most), self.rays.time)
 
-    def light_pdf(self, before: "Interactions") -> Floats:
+    def light_pdf(self, before: Interactions) -> Floats:
         """Return the density with which `light` would have sampled the emitters that the rays hit: (N,).
 
         Parameters

@@ -1,5 +1,7 @@
 """Masks of rays and of shapes."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any, Literal, TypeAlias
 

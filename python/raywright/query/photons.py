@@ -1,5 +1,7 @@
 """Light at the surfaces that it comes to, and among media."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
@@ -82,7 +84,7 @@ class Photons:
             object.__setattr__(self, name, sealed(getattr(self, name)))
 
     @classmethod
-    def _of(cls, vectors: tuple[Any, ...], numbers: tuple[Any, ...], bits: Any, flux: Any) -> "Photons":
+    def _of(cls, vectors: tuple[Any, ...], numbers: tuple[Any, ...], bits: Any, flux: Any) -> Photons:
         """Return what the core gave."""
         positions, directions, normals, powers = vectors
         shape_id, primitive_id, path, bounces = numbers
@@ -110,7 +112,7 @@ class Photons:
     def __len__(self) -> int:
         return len(self.path)
 
-    def __getitem__(self, which: Any) -> "Photons":
+    def __getitem__(self, which: Any) -> Photons:
         chosen: dict[str, Any] = {name: np.atleast_1d(getattr(self, name)[which]) for name in _ARRAYS[4:]}
         chosen |= {name: getattr(self, name)[which].reshape(-1, 3) for name in _ARRAYS[:4]}
         return replace(self, **chosen)

@@ -1,5 +1,7 @@
 """Points on surfaces, drawn by matplotlib."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The questions that points ask of a scene."""
 
+from __future__ import annotations
+
 import warnings
 
 import numpy as np

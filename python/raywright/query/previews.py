@@ -1,5 +1,7 @@
 """Pictures of a ray and a shadow ray a pixel."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The questions that rays and points ask of a scene."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Rays and points as the core takes them."""
 
+from __future__ import annotations
+
 import math
 from typing import Any, TypeAlias
 

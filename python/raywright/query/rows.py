@@ -1,5 +1,7 @@
 """Indexing of results by ray, and results as columns of a table."""
 
+from __future__ import annotations
+
 import copy
 import math
 from collections.abc import Mapping, Sequence

@@ -1,5 +1,7 @@
 """Rays that leave surfaces."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np

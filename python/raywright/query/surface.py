@@ -1,5 +1,7 @@
 """Differential geometry at hits."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Results as columns of a table, for pandas and for notebooks."""
 
+from __future__ import annotations
+
 from typing import Any
 
 from numpy.typing import NDArray

@@ -1,5 +1,7 @@
 """The boxes of a scene's tree."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -55,7 +57,7 @@ class TreeBoxes:
         """Greatest corner along the scene's own axes: (K, 3) float64."""
         return sealed(self.corners.max(axis=1))
 
-    def at(self, depth: int) -> "TreeBoxes":
+    def at(self, depth: int) -> TreeBoxes:
         """Return the boxes that are `depth` steps from the root.
 
         Parameters

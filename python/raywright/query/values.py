@@ -1,5 +1,7 @@
 """Values that meshes have, where points are on them."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Sequence
 from typing import Any, TypeAlias
 

@@ -1,5 +1,7 @@
 """From a scene and a camera to a picture, with its error against its time."""
 
+from __future__ import annotations
+
 from .aovs import AOVS
 from .filters import (
     BlackmanHarrisFilter,

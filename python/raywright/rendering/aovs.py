@@ -1,5 +1,7 @@
 """Auxiliary buffers (AOVs): geometry, albedo and coverage of the first hit."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Choice of the path tracer's options by a pilot."""
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable, Mapping
 from itertools import product

@@ -1,5 +1,7 @@
 """Pictures of the core's renders."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any

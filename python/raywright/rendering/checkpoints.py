@@ -1,5 +1,7 @@
 """Checkpoints of renders: files to resume from."""
 
+from __future__ import annotations
+
 import errno
 import json
 import os

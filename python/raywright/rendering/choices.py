@@ -1,5 +1,7 @@
 """Choice of the sampler if none is named, by the render's limits."""
 
+from __future__ import annotations
+
 from typing import TypeAlias
 
 from .. import _core

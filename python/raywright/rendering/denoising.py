@@ -1,5 +1,7 @@
 """Denoising of a picture, and the error that remains."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

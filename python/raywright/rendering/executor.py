@@ -7,6 +7,8 @@ pass. Pieces are added in the order of their samples, whenever they come, so a p
 has on one machine.
 """
 
+from __future__ import annotations
+
 import concurrent.futures
 import hashlib
 import importlib
@@ -238,7 +240,7 @@ class Distribution:
             return (time.perf_counter() - self._since) / (self._landed / tiles)
         return self._cost * tiles / self._slots or self._rendering.rate
 
-    def _land(self, future: "Future[Any]") -> None:
+    def _land(self, future: Future[Any]) -> None:
         """Add the results of a piece of work."""
         piece = self._flying.pop(future)
         try:

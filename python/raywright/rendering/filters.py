@@ -4,6 +4,8 @@ Samples are drawn by the size of the filter around their own pixel (Ernst, Stamm
 Importance Sampling", 2006), so that the errors of pixels stay independent.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..arrays import integer, number

@@ -1,5 +1,7 @@
 """From scenes that change to animations."""
 
+from __future__ import annotations
+
 import errno
 import math
 import os

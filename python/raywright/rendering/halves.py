@@ -1,5 +1,7 @@
 """Pictures in two independent halves of samples, for the denoiser."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

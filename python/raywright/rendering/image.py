@@ -1,5 +1,7 @@
 """Pictures, with how wrong they still are."""
 
+from __future__ import annotations
+
 import math
 import time
 from collections.abc import Mapping
@@ -246,7 +248,7 @@ class Image:
         away = times * (self.standard_error if self.pooled_error is None else self.pooled_error)
         return (self.rgb - away).astype(np.float32), (self.rgb + away).astype(np.float32)
 
-    def denoise(self, method: str = "regression", *, threads: int | None = None) -> "Image":
+    def denoise(self, method: str = "regression", *, threads: int | None = None) -> Image:
         """Return a denoised picture, with its error.
 
         Each half of the samples is filtered by itself, in several ways. A quarter of the samples, in the

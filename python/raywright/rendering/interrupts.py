@@ -1,5 +1,7 @@
 """Renders that are ended from outside: by Ctrl-C, and by SIGTERM, which leaves a checkpoint behind."""
 
+from __future__ import annotations
+
 import signal
 import threading
 from collections.abc import Callable, Iterator

@@ -1,5 +1,7 @@
 """The job of a render."""
 
+from __future__ import annotations
+
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property

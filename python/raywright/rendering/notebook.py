@@ -1,5 +1,7 @@
 """Pictures in notebooks, updated during a render."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Callable
 from typing import Any

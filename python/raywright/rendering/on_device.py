@@ -1,5 +1,7 @@
 """Pictures whose paths are traced by a graphics processor: supported features, and the passes."""
 
+from __future__ import annotations
+
 import time
 import warnings
 from collections.abc import Callable

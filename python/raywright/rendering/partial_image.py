@@ -1,5 +1,7 @@
 """Pictures of renders in progress, computed on access."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any
@@ -64,7 +66,7 @@ class ImageSoFar(Image):
         outline: Callable[[_core.Rendering], Mapping[str, Any]],
         size: tuple[int, int],
         counted: bool,
-    ) -> "ImageSoFar":
+    ) -> ImageSoFar:
         """Return one field of the picture.
 
         Parameters

@@ -1,5 +1,7 @@
 """Pictures of photon maps: the decay of their error, and their bias by blur."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 

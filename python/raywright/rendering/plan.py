@@ -1,5 +1,7 @@
 """Options that a render has chosen, with reasons."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 
 from ..html_tables import html_table
@@ -73,7 +75,7 @@ class RenderPlan:
                 return row
         raise KeyError(what)
 
-    def explained(self, what: str, why: str) -> "RenderPlan":
+    def explained(self, what: str, why: str) -> RenderPlan:
         """Return the plan with one more reason in the row of an option.
 
         Parameters

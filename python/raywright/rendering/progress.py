@@ -1,5 +1,7 @@
 """A progress bar on stderr with the error of the picture."""
 
+from __future__ import annotations
+
 import math
 import sys
 from collections.abc import Callable, Iterator

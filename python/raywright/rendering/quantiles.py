@@ -1,5 +1,7 @@
 """Where samples lie that are drawn by a filter: by tables, as devices take them."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """From a scene and a camera to a picture."""
 
+from __future__ import annotations
+
 import os
 import time
 import warnings as python_warnings
@@ -71,14 +73,14 @@ def render(
     sampler: Sampler | Unnamed | None = None,
     filter: Filter = _FILTER,
     checkpoint: str | os.PathLike[str] | None = None,
-    executor: "Executor | None" = None,
+    executor: Executor | None = None,
     aov: str | Iterable[str] = (),
     stop: Stop | None = None,
     background: str = "shown",
     on_interrupt: str = "raise",
     halves: bool = False,
     denoise: bool | str = False,
-    device: "Gpu | None" = None,
+    device: Gpu | None = None,
 ) -> Image:
     """Render a picture until the first of the given limits is met.
 
@@ -491,7 +493,7 @@ def _here(
 def _elsewhere(
     rendering: _core.Rendering,
     job: Job,
-    executor: "Executor",
+    executor: Executor,
     limits: Limits,
     threads: int | None,
     report: Report | None,
@@ -517,7 +519,7 @@ def _elsewhere(
     return []
 
 
-def _begun(kept: "Checkpoints | None", job: Job, threads: int | None) -> _core.Rendering:
+def _begun(kept: Checkpoints | None, job: Job, threads: int | None) -> _core.Rendering:
     """Return an empty render, or that of a checkpoint."""
     patch = job.patch()
     film = None if kept is None else kept.read(_core.Rendering.most_bytes(job.core))

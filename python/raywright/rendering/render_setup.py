@@ -1,5 +1,7 @@
 """A scene with all that it takes to make a picture of it."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -123,7 +125,7 @@ class RenderSetup:
             overrides = {name: value for name, value in overrides.items() if name not in _LIMITS}
         return render(**(own | overrides))
 
-    def resized(self, width: int | None = None, height: int | None = None) -> "RenderSetup":
+    def resized(self, width: int | None = None, height: int | None = None) -> RenderSetup:
         """Return the shot with a picture of another size.
 
         Parameters

@@ -6,6 +6,8 @@ each other; batches are independent, and the spread between them gives the error
 few large batches unless another is named.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..arrays import integer

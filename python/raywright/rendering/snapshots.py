@@ -1,5 +1,7 @@
 """Pictures of a render that is under way, as often as they cost little."""
 
+from __future__ import annotations
+
 import time
 import weakref
 from collections.abc import Callable

@@ -5,6 +5,8 @@ reads it from a file, or requests it. The scene is compiled once a process, howe
 there.
 """
 
+from __future__ import annotations
+
 import hashlib
 import os
 import pickle

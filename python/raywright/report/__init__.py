@@ -1,5 +1,7 @@
 """Reports on cost and error against time."""
 
+from __future__ import annotations
+
 from .accelerators import AcceleratorReport, accelerators, rays_per_build
 from .contest import Measured
 from .convergence import ConvergenceReport, Fit, convergence

@@ -1,5 +1,7 @@
 """Accelerators side by side, on the same rays."""
 
+from __future__ import annotations
+
 import statistics
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,5 +1,7 @@
 """Accelerators that take turns at the same shapes and the same rays."""
 
+from __future__ import annotations
+
 import statistics
 import time
 from dataclasses import dataclass, field

@@ -1,5 +1,7 @@
 """Error against run time: which way of rendering a scene gives how good a picture, how soon."""
 
+from __future__ import annotations
+
 import inspect
 import math
 import statistics

@@ -4,6 +4,8 @@ Floats are integers times powers of two. With the powers multiplied out, all tha
 in arrays of Python's integers: without any rounding, and without anything that the core computes.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

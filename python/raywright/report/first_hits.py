@@ -1,5 +1,7 @@
 """The first hits of a picture by rays and by rasterising, side by side."""
 
+from __future__ import annotations
+
 import statistics
 import time
 from collections.abc import Callable

@@ -1,5 +1,7 @@
 """The picture of where the work is: nodes visited or primitives tested, pixel by pixel."""
 
+from __future__ import annotations
+
 import io
 from dataclasses import dataclass
 from os import PathLike

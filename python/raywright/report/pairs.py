@@ -4,6 +4,8 @@ In each family half of the rays hit and half miss, as far as float32 can aim: up
 are drawn as are wanted, and a rough decision in float64 chooses among them.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -36,7 +38,7 @@ class Pairs:
     def __len__(self) -> int:
         return len(self.origins)
 
-    def __getitem__(self, chosen: Any) -> "Pairs":
+    def __getitem__(self, chosen: Any) -> Pairs:
         return Pairs(self.origins[chosen], self.directions[chosen], self.corners[chosen])
 
 

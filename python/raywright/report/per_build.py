@@ -1,5 +1,7 @@
 """Rays per build: which accelerator is done first with building itself and tracing so many rays."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple

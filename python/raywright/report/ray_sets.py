@@ -1,5 +1,7 @@
 """Typical rays for comparisons of accelerators: primary, diffuse and shadow rays of a camera."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -72,7 +74,7 @@ class Rays:
         """Number of rays."""
         return self.origins.size // 3
 
-    def thinned(self, most: int) -> "Rays":
+    def thinned(self, most: int) -> Rays:
         """Return at most `most` of the rays, evenly spread; an image stays an image.
 
         Parameters

@@ -1,5 +1,7 @@
 """The table that every report is: printed, written as Markdown or CSV, or plotted."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -175,7 +177,7 @@ class Table(Generic[Row]):
         at = self._at(name)
         return tuple(row[at] for row in self.rows)
 
-    def where(self, **wanted: Any) -> "Self":
+    def where(self, **wanted: Any) -> Self:
         """Return the table of the rows with these entries, by the names of columns.
 
         Parameters

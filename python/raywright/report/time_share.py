@@ -1,5 +1,7 @@
 """Estimated shares of rays' time for boxes and for primitives."""
 
+from __future__ import annotations
+
 import itertools
 import time
 from dataclasses import dataclass

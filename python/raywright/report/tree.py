@@ -1,5 +1,7 @@
 """The boxes of a tree, drawn."""
 
+from __future__ import annotations
+
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np

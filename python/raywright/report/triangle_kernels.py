@@ -1,5 +1,7 @@
 """Error against time of the ways to meet a triangle."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 

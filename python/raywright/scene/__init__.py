@@ -1,5 +1,7 @@
 """Scenes: shapes and lights, compiled for rays."""
 
+from __future__ import annotations
+
 from .instance import Instance
 from .plan import Plan, PlanRow
 from .scene import Scene

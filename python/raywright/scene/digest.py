@@ -1,5 +1,7 @@
 """Digests that tell two objects apart without keeping them."""
 
+from __future__ import annotations
+
 import pickle
 from typing import Any
 

@@ -1,5 +1,7 @@
 """A camera that has everything in its picture."""
 
+from __future__ import annotations
+
 import math
 from os import PathLike
 from typing import Any, Literal

@@ -1,5 +1,7 @@
 """Shapes put in many places."""
 
+from __future__ import annotations
+
 import bisect
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -123,7 +125,7 @@ class Instance:
 
     def __init__(
         self,
-        shapes: "Shapes",
+        shapes: Shapes,
         transform: ArrayLike,
         transform_end: ArrayLike | None = None,
         accelerator: Accelerator | None = None,
@@ -249,7 +251,7 @@ class Instance:
             shape, own = self.shapes[i], primitive_id[which] - self._first[i]
             yield shape, which, own % shape.primitives if isinstance(shape, Instance) else own
 
-    def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> "Instance":
+    def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> Instance:
         """Return an instance of the same shapes elsewhere; both share the compiled form.
 
         Parameters

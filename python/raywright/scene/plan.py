@@ -1,5 +1,7 @@
 """The plan of a scene: the features it needs, and those left out."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..html_tables import html_table

@@ -1,5 +1,7 @@
 """Progress of builds: a bar on stderr for long ones, or a callback."""
 
+from __future__ import annotations
+
 import sys
 import time
 from collections.abc import Callable, Iterator

@@ -1,5 +1,7 @@
 """The scene: shapes, lights, environment and medium."""
 
+from __future__ import annotations
+
 import os
 import warnings
 from collections.abc import Iterator, Sequence
@@ -52,7 +54,7 @@ _ARGUMENTS = (
 class Device(Protocol[Held]):
     """A device that holds a scene: a `Gpu`."""
 
-    def upload(self, scene: "Scene") -> AbstractContextManager[Held]:
+    def upload(self, scene: Scene) -> AbstractContextManager[Held]:
         """Hold a scene during a ``with`` block."""
 
 
@@ -277,7 +279,7 @@ class Scene(Queries):
         """
         return self._compiled().bounds
 
-    def replace(self, **changes: Any) -> "Scene":
+    def replace(self, **changes: Any) -> Scene:
         """Return a copy of the scene with some arguments changed.
 
         The first query compiles it: if it differs in lights, environment and medium alone, it shares this
@@ -451,7 +453,7 @@ class Scene(Queries):
             self._alike = None
         self._compiled(progress)
 
-    def welded(self) -> "Scene":
+    def welded(self) -> Scene:
         """Return the scene with its meshes welded: corners that differ by rounding are merged, by `weld`.
 
         Returns
@@ -702,10 +704,10 @@ class Scene(Queries):
     def __reduce__(self) -> tuple[Any, ...]:
         return _arrived, self._parts()
 
-    def __copy__(self) -> "Scene":
+    def __copy__(self) -> Scene:
         return Scene(*self._parts())
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "Scene":
+    def __deepcopy__(self, memo: dict[int, Any]) -> Scene:
         # A scene is immutable, so copies share all parts.
         return Scene(*self._parts())
 

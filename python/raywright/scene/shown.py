@@ -1,5 +1,7 @@
 """A scene as a table that notebooks show."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

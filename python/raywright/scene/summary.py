@@ -1,5 +1,7 @@
 """A scene described in lines of text."""
 
+from __future__ import annotations
+
 from .._core import simd
 from ..shapes import Shape
 from ..shapes.mesh import Mesh, face_count

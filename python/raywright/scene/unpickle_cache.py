@@ -1,5 +1,7 @@
 """Scenes from pickles: a process compiles each of them once."""
 
+from __future__ import annotations
+
 from collections import OrderedDict
 
 from .. import _core
@@ -8,7 +10,7 @@ from .digest import digest
 
 # More would hold the memory of scenes no longer in use.
 _MOST = 2
-_kept: "OrderedDict[str, _core.CompiledScene]" = OrderedDict()
+_kept: OrderedDict[str, _core.CompiledScene] = OrderedDict()
 _lock = Lock()
 
 
@@ -19,7 +21,7 @@ class Arrival:
         self._name = name
 
     @classmethod
-    def of(cls, scene: object) -> "Arrival | None":
+    def of(cls, scene: object) -> Arrival | None:
         """Return the key of a scene; None if Python's own pickler cannot take its contents."""
         try:
             return cls(digest(scene))

@@ -1,5 +1,7 @@
 """The reason for spectral rendering, if there is one."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
 from typing import Any

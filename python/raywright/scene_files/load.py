@@ -1,5 +1,7 @@
 """Files of all kinds, ready to be rendered."""
 
+from __future__ import annotations
+
 import errno
 from dataclasses import replace
 from os import PathLike

@@ -1,5 +1,7 @@
 """Notes about a scene file: what of it is not shown as it says."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 from ..io.quiet import warn_caller

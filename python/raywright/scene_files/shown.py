@@ -1,5 +1,7 @@
 """Lighting, framing and a floor for files that lack them."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any, Literal
 

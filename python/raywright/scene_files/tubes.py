@@ -1,5 +1,7 @@
 """Curves with a radius, as meshes: straight ones with round joints, and cubic B-splines."""
 
+from __future__ import annotations
+
 from itertools import pairwise
 from typing import NamedTuple
 

@@ -1,5 +1,7 @@
 """Scenes that are ready to render, and those on which accelerators are compared."""
 
+from __future__ import annotations
+
 from .ball import material_ball
 from .city import city
 from .classics import classics

@@ -1,5 +1,7 @@
 """A ball that shows a material."""
 
+from __future__ import annotations
+
 import math
 
 from ..cameras import Camera

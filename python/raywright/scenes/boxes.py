@@ -1,5 +1,7 @@
 """Many boxes as one mesh: what walls, rooms and cities are made of."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """A city of blocks, towers and streets."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import SeedLike, integer, seed_number

@@ -1,5 +1,7 @@
 """The scenes on which textbooks compare accelerators, each with a camera."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import SeedLike, integer, seed_number

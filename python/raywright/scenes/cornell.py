@@ -1,5 +1,7 @@
 """The Cornell box."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

@@ -4,6 +4,8 @@ Reflectances of its walls and the radiance of its lamp, as published by the Corn
 Computer Graphics ("Cornell Box Data").
 """
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """Classic scenes of thin films: a soap bubble, and oil on a wet road."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

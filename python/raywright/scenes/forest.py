@@ -1,5 +1,7 @@
 """A forest: a few trees, and where they stand, again and again."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -166,7 +168,7 @@ def _branches() -> int:
     return sum(_CHILDREN**level for level in range(_LEVELS))
 
 
-def _tree(rng: "np.random.Generator", triangles: int) -> Mesh:
+def _tree(rng: np.random.Generator, triangles: int) -> Mesh:
     """Return a tree of so many triangles: tapered tubes, and leaves at random places on the last of them."""
     feet, ways, radii = np.zeros((1, 3)), np.array([[0.0, 3.0, 0.0]]), np.array([0.18])
     wood = []
@@ -188,7 +190,7 @@ def _tree(rng: "np.random.Generator", triangles: int) -> Mesh:
     return Mesh(vertices, np.concatenate([faces, more]), material=Diffuse((0.2, 0.3, 0.1)))
 
 
-def _parted(rng: "np.random.Generator", feet: Array, ways: Array, radii: Array) -> tuple[Array, Array, Array]:
+def _parted(rng: np.random.Generator, feet: Array, ways: Array, radii: Array) -> tuple[Array, Array, Array]:
     """Return the branches that begin where others end."""
     count = len(feet) * _CHILDREN
     tips, ways, radii = (np.repeat(a, _CHILDREN, axis=0) for a in (feet + ways, ways, radii))
@@ -214,7 +216,7 @@ def _tubes(feet: Array, ways: Array, radii: Array) -> Array:
     return np.stack([low, high], axis=1).reshape(-1, 3)
 
 
-def _leaves(rng: "np.random.Generator", feet: Array, ways: Array, count: int) -> Array:
+def _leaves(rng: np.random.Generator, feet: Array, ways: Array, count: int) -> Array:
     """Return triangles around twigs: (count, 3, 3), the smaller the more there are."""
     twig = rng.integers(len(feet), size=count)
     middle = feet[twig] + rng.uniform(0.2, 1.1, (count, 1)) * ways[twig] + rng.normal(0, 0.12, (count, 3))

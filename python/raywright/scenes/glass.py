@@ -1,5 +1,7 @@
 """A glass and a mirror ball in a box, with their caustics."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..cameras import Camera

@@ -1,5 +1,7 @@
 """A torus knot: a smooth closed mesh with bumps, shadows and light that bounces between its strands."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import integer, positive

@@ -1,5 +1,7 @@
 """A room with thousands of lamps."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import SeedLike, integer, seed_number

@@ -1,5 +1,7 @@
 """Plates and lamps on which no one way to find light will do."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

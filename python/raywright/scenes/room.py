@@ -1,5 +1,7 @@
 """A room of long thin boxes, as architects draw them."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import SeedLike, integer, seed_number

@@ -1,5 +1,7 @@
 """Triangles without any order."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import SeedLike, integer, positive, seed_number

@@ -1,5 +1,7 @@
 """The teapot in the stadium: most of the triangles in next to none of the room."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import integer, positive

@@ -1,5 +1,7 @@
 """A studio: a floor, a lamp, a soft sky and a camera around any mesh."""
 
+from __future__ import annotations
+
 import math
 from typing import Any, Literal
 

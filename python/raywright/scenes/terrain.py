@@ -1,5 +1,7 @@
 """Hills with grass on them: much detail, evenly spread."""
 
+from __future__ import annotations
+
 import numpy as np
 
 from ..arrays import SeedLike, integer, seed_number
@@ -63,7 +65,7 @@ def terrain(side: int = 160, blades: int = 50_000, seed: SeedLike = 0) -> list[M
     return [ground, _grass(rng, heights, blades)] if blades else [ground]
 
 
-def _heights(rng: "np.random.Generator", points: int) -> Array:
+def _heights(rng: np.random.Generator, points: int) -> Array:
     """Random waves on a grid of points, from 0 to the height of the hills."""
     frequency = np.hypot(np.fft.fftfreq(points)[:, np.newaxis], np.fft.rfftfreq(points))
     # Amplitude falls with the square of the frequency, power with the fourth. The mean does not matter.
@@ -74,7 +76,7 @@ def _heights(rng: "np.random.Generator", points: int) -> Array:
     return np.asarray(heights * (_HEIGHT / heights.max()))
 
 
-def _grass(rng: "np.random.Generator", heights: Array, blades: int) -> Mesh:
+def _grass(rng: np.random.Generator, heights: Array, blades: int) -> Mesh:
     """Blades that stand on the ground, each a triangle."""
     cells = int(np.ceil(blades**0.5))
     chosen = np.sort(rng.permutation(cells * cells)[:blades])

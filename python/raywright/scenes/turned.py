@@ -1,5 +1,7 @@
 """The same scene, rotated: it shows the dependence of an accelerator on the axes."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
 

@@ -1,5 +1,7 @@
 """A wall of long thin boards: easy for boxes along the axes, and hard once it is turned."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

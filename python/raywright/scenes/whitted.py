@@ -1,5 +1,7 @@
 """The picture that made ray tracing known."""
 
+from __future__ import annotations
+
 from ..cameras import Camera
 from ..lights import PointLight
 from ..materials import BlinnPhong, Dielectric, Mirror, Mix

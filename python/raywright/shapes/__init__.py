@@ -1,5 +1,7 @@
 """Curved shapes and polygons, each solved in its own form: nothing is cut into triangles."""
 
+from __future__ import annotations
+
 from .box import Box
 from .cone import Cone
 from .cylinder import Cylinder

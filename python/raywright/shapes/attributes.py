@@ -1,5 +1,7 @@
 """Values of the vertices and faces of meshes, by name."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any, TypeAlias

@@ -1,5 +1,7 @@
 """The cone and the truncated cone."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """The disk."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

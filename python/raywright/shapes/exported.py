@@ -1,5 +1,7 @@
 """Meshes as other libraries have them."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Surfaces given by an expression."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """Triangle meshes."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from importlib import import_module
@@ -132,7 +134,7 @@ class Mesh:
             object.__setattr__(self, field, kept)
 
     @classmethod
-    def of(cls, source: Any, tolerance: float | None = None) -> "Mesh":
+    def of(cls, source: Any, tolerance: float | None = None) -> Mesh:
         """Return a file, an object of another library, or several of these, as one mesh.
 
         Vertices stay where they are, polygons become triangles, and attributes keep their names.
@@ -189,7 +191,7 @@ class Mesh:
         )
         return made
 
-    def to_trimesh(self) -> "trimesh.Trimesh":
+    def to_trimesh(self) -> trimesh.Trimesh:
         """Return the mesh as a trimesh.Trimesh, with vertices, faces, normals, attributes, and colors or uv.
 
         `cells` are the face attribute "cell". A plain diffuse color of the material is kept.
@@ -212,7 +214,7 @@ class Mesh:
         made: trimesh.Trimesh = to_trimesh(self)
         return made
 
-    def to_pyvista(self) -> "pyvista.PolyData":
+    def to_pyvista(self) -> pyvista.PolyData:
         """Return the mesh as a pyvista.PolyData, with attributes as point and cell data.
 
         `cells` are the cell data "cell"; normals, uv and colors are point data of these names.
@@ -240,7 +242,7 @@ class Mesh:
 
         return to_pyvista(self)
 
-    def to_open3d(self) -> "open3d.t.geometry.TriangleMesh":
+    def to_open3d(self) -> open3d.t.geometry.TriangleMesh:
         """Return the mesh as one of Open3D, with attributes as vertex and triangle attributes.
 
         `cells` are the triangle attribute "cell". Its ``to_legacy()`` has no attributes.
@@ -336,7 +338,7 @@ class Mesh:
 
     # NaN and infinity are reported when the scene is compiled.
     @np.errstate(over="ignore", invalid="ignore")
-    def transformed(self, matrix: ArrayLike) -> "Mesh":
+    def transformed(self, matrix: ArrayLike) -> Mesh:
         """Return the mesh moved by an affine matrix, computed in float64.
 
         A matrix that mirrors also turns every face round (its second and third corner change places), so that

@@ -1,5 +1,7 @@
 """The paraboloid of revolution."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """The infinite plane."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

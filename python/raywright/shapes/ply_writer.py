@@ -1,5 +1,7 @@
 """PLY files (Turk, "The PLY Polygon File Format", 1994) of meshes with all their values."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Meshes as files."""
 
+from __future__ import annotations
+
 import os
 from pathlib import Path
 from typing import Any

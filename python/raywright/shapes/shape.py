@@ -1,5 +1,7 @@
 """The base class of shapes that are no meshes."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 from typing import Any
 

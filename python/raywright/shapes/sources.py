@@ -3,6 +3,8 @@
 A library is never imported to recognise its objects: whoever made one has imported it.
 """
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Iterator, Mapping
 from importlib import import_module

@@ -1,5 +1,7 @@
 """Topology of a mesh from its faces alone."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """The torus."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """Corners of meshes that are one but for rounding."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, TypeVar, cast
 

@@ -1,5 +1,7 @@
 """Textures: every color or number of a material may vary over the surface."""
 
+from __future__ import annotations
+
 from .blackbody import Blackbody
 from .checker import Checker
 from .fbm import FBm

@@ -1,5 +1,7 @@
 """Blackbody radiation."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

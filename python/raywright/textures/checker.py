@@ -1,5 +1,7 @@
 """Cells of two kinds in turn."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """Noise of many sizes."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Light that standards define."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np

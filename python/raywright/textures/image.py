@@ -1,5 +1,7 @@
 """Pictures on surfaces."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike

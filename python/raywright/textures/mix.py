@@ -1,5 +1,7 @@
 """Two textures by a third."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """Noise of one size."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

@@ -1,5 +1,7 @@
 """Textures times each other."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from numpy.typing import ArrayLike

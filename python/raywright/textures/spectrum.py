@@ -1,5 +1,7 @@
 """Spectra by their values."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -121,7 +123,7 @@ class Spectrum(Texture):
         """The luminance of it as light: 1 for a value of 1 at all wavelengths."""
         return _core.spectrum_luminance(self._rows())
 
-    def __mul__(self, factor: float) -> "Spectrum":
+    def __mul__(self, factor: float) -> Spectrum:
         """Return so many times as much of it."""
         return Spectrum(self.wavelengths, np.multiply(self.values, number("factor", factor)))
 
@@ -135,7 +137,7 @@ class Spectrum(Texture):
         return red, green, blue
 
 
-def colour_or_spectrum(name: str, value: "ArrayLike | Spectrum") -> "Triple | Spectrum":
+def colour_or_spectrum(name: str, value: ArrayLike | Spectrum) -> Triple | Spectrum:
     """Return a spectrum as it is, or one number or three as three floats, each finite and at least 0.
 
     Raises

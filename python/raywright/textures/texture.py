@@ -1,5 +1,7 @@
 """The base class of textures, and values that may be textures or constants."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias, Union
@@ -31,7 +33,7 @@ class Texture:
 
 
 def value(
-    name: str, given: "ArrayLike | Texture", least: float = 0.0, most: float = math.inf, above: bool = False
+    name: str, given: ArrayLike | Texture, least: float = 0.0, most: float = math.inf, above: bool = False
 ) -> Value:
     """Return a texture as it is, or one number or three as three floats: each finite and in least..most.
 
@@ -66,7 +68,7 @@ def value(
 
 
 def scalar(
-    name: str, given: "float | Texture", least: float = 0.0, most: float = math.inf, above: bool = False
+    name: str, given: float | Texture, least: float = 0.0, most: float = math.inf, above: bool = False
 ) -> Number:
     """Return a texture as it is, or one number as a float; errors as those of `value`.
 

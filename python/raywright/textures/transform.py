@@ -1,5 +1,7 @@
 """Where textures lie: affine maps of texture coordinates, and of the space of a shape."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -135,9 +137,7 @@ class ObjectTransform:
 Transform: TypeAlias = UvTransform | ObjectTransform
 
 
-def placed(
-    given: "Transform | float | None", default: type[UvTransform] | type[ObjectTransform]
-) -> Transform:
+def placed(given: Transform | float | None, default: type[UvTransform] | type[ObjectTransform]) -> Transform:
     """Return a transform; a number is the scale of one of the default kind.
 
     Raises

@@ -1,5 +1,7 @@
 """The colours of a mesh's vertices."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 from ..arrays import Triple

@@ -1,5 +1,7 @@
 """Scenes in the browser: a page that shows a render while it gets better, and lets the camera be moved."""
 
+from __future__ import annotations
+
 import atexit
 import threading
 from typing import TYPE_CHECKING, Any
@@ -55,7 +57,7 @@ class Viewer:
 
     url: str
 
-    def __init__(self, server: "Server", session: "Session") -> None:
+    def __init__(self, server: Server, session: Session) -> None:
         self.url = server.url
         self._server, self._session = server, session
         self._widget: ViewerWidget | None = None
@@ -104,7 +106,7 @@ class Viewer:
         if self._widget is not None:
             self._widget.again()
 
-    def widget(self) -> "ViewerWidget":
+    def widget(self) -> ViewerWidget:
         """Return the viewer as a widget for notebooks, which shows itself where a cell ends with it.
 
         It is the page, by the notebook's own messages: it works with a kernel on another machine, too.
@@ -192,7 +194,7 @@ class Viewer:
             return {"text/plain": f"{self!r}\n({missing})"}
         return widget._repr_mimebundle_(include=include, exclude=exclude)
 
-    def __enter__(self) -> "Viewer":
+    def __enter__(self) -> Viewer:
         return self
 
     def __exit__(self, *_: object) -> None:

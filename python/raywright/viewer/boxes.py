@@ -1,5 +1,7 @@
 """Boxes of an accelerator over a picture."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

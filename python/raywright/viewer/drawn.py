@@ -1,5 +1,7 @@
 """Data for a page that draws a scene by itself: arrays for its graphics processor, and the spread of rays."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Light while the camera moves: of all lamps one, for one shadow ray a pixel, and one colour of the sky."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Camera motion around a point."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -48,7 +50,7 @@ class View:
     }
 
     @classmethod
-    def read(cls, told: Any) -> "View":
+    def read(cls, told: Any) -> View:
         """Return the view of a mapping; missing entries are those of the start.
 
         Raises

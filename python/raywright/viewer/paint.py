@@ -1,5 +1,7 @@
 """One colour for each primitive, for pictures that are drawn while the camera moves."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Requests and messages of a page, for the server and for notebooks."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 

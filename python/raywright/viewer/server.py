@@ -5,6 +5,8 @@ machine and no other page finds it. The headers Host and Origin must be the serv
 ask, not even one whose name was made to mean this machine (DNS rebinding).
 """
 
+from __future__ import annotations
+
 import base64
 import json
 import secrets

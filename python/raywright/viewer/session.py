@@ -1,5 +1,7 @@
 """A render that goes on while pages are open, and begins anew when the camera is moved."""
 
+from __future__ import annotations
+
 import math
 import re
 import threading
@@ -371,7 +373,7 @@ class Session:
             self._changed.notify_all()
         self._thread.join()
 
-    def is_wanted(self, job: "_Job") -> bool:
+    def is_wanted(self, job: _Job) -> bool:
         """Return whether a job is still wanted."""
         unseen = self._watchers == 0 and time.monotonic() - self._left > _GRACE
         return not self._closed and not unseen and job.number == self._wanted
@@ -401,12 +403,12 @@ class Session:
             finally:
                 self._rendering = False
 
-    def _rests(self, job: "_Job") -> bool:
+    def _rests(self, job: _Job) -> bool:
         """Wait for a moment whether something else is wanted; whether nothing was."""
         with self._changed:
             return not self._changed.wait_for(lambda: self._closed or self._wanted != job.number, _REST)
 
-    def _preview(self, job: "_Job") -> None:
+    def _preview(self, job: _Job) -> None:
         """Show something soon: a ray and a shadow ray a pixel."""
         camera = resized(self._orbit.camera(job.view), *job.size)
         began = time.monotonic()
@@ -419,7 +421,7 @@ class Session:
         )
         self._show(Sketch(pixels, time.monotonic() - began), job, "preview")
 
-    def _picture(self, job: "_Job") -> None:
+    def _picture(self, job: _Job) -> None:
         def show(image: Image) -> None:
             # Until all pixels have a sample, the preview is the better picture.
             if image.samples:
@@ -433,7 +435,7 @@ class Session:
         self._done = job.number
         self._show(image, job, "done")
 
-    def _show(self, image: Image | Sketch, job: "_Job", state: str) -> None:
+    def _show(self, image: Image | Sketch, job: _Job, state: str) -> None:
         with self._changed:
             last = self._frame
             if (

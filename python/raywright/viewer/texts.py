@@ -1,5 +1,7 @@
 """The texts of a page: its own, and the kernels of graphics processors."""
 
+from __future__ import annotations
+
 import re
 from functools import lru_cache
 from importlib.resources import files

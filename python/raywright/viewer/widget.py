@@ -4,6 +4,8 @@ All goes by the widget's own channel, so that it works wherever the kernel runs;
 out of reach of a browser on another machine.
 """
 
+from __future__ import annotations
+
 import re
 import threading
 from typing import Any

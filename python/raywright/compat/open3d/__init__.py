@@ -5,6 +5,8 @@ exactly, and a ray that crosses a surface on an edge or a corner crosses it once
 installed: arrays of numpy are taken and returned, and tensors of Open3D where they come.
 """
 
+from __future__ import annotations
+
 from .installation import install, uninstall
 from .raycasting_scene import RaycastingScene
 

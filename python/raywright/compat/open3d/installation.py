@@ -1,5 +1,7 @@
 """Open3D with raywright's `RaycastingScene`, and back."""
 
+from __future__ import annotations
+
 from ..switch import Installation, Replacement, Switch
 from .raycasting_scene import RaycastingScene
 

@@ -1,5 +1,7 @@
 """Rays through the pixels of a pinhole camera, as in Open3D."""
 
+from __future__ import annotations
+
 import math
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Ray and point queries on triangle meshes, as in Open3D."""
 
+from __future__ import annotations
+
 import inspect
 from typing import Any, ClassVar
 

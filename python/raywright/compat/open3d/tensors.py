@@ -1,5 +1,7 @@
 """Tensors of Open3D as arrays, and back."""
 
+from __future__ import annotations
+
 import sys
 from typing import Any
 

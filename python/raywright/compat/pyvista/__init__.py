@@ -5,6 +5,8 @@
 meshes of triangles alone.
 """
 
+from __future__ import annotations
+
 from .filters import multi_ray_trace, ray_trace, select_interior_points
 from .installation import install, uninstall
 

@@ -1,5 +1,7 @@
 """Filters of pyvista's meshes."""
 
+from __future__ import annotations
+
 from typing import Any, Literal
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The meshes of pyvista with raywright's rays, and back."""
 
+from __future__ import annotations
+
 from ..switch import Installation, Replacement, Switch
 from .filters import multi_ray_trace, ray_trace, select_interior_points
 

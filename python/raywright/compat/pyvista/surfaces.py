@@ -1,5 +1,7 @@
 """Surfaces of pyvista as triangles."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np

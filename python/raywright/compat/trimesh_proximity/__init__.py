@@ -6,6 +6,8 @@ closest points without rtree and scipy. With `install` they also answer ``mesh.n
 other names of ``trimesh.proximity`` can be read here too, and are trimesh's own.
 """
 
+from __future__ import annotations
+
 import trimesh
 
 from .closest import ProximityQuery, closest_point, signed_distance

@@ -1,5 +1,7 @@
 """Closest points and signed distances of a trimesh mesh."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Of faces that are equally close to a point, the one that faces it."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

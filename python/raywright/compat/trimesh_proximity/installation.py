@@ -1,5 +1,7 @@
 """The closest points of trimesh by raywright, and back."""
 
+from __future__ import annotations
+
 import trimesh
 
 from ..switch import Installation, Replacement, Switch

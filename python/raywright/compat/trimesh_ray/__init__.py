@@ -5,6 +5,8 @@ decided exactly, and all hits of a ray are found in one pass, so that none is lo
 counts once, however small, large or far from the origin a mesh is.
 """
 
+from __future__ import annotations
+
 from ..switch import Installation
 from .installation import install, uninstall
 from .intersector import RayMeshIntersector

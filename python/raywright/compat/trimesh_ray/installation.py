@@ -1,5 +1,7 @@
 """Every mesh of trimesh with raywright's rays, and back."""
 
+from __future__ import annotations
+
 import sys
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Ray queries on one trimesh mesh."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 
@@ -302,10 +304,10 @@ class RayMeshIntersector:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(state["mesh"], state["_scale_to_box"])  # type: ignore[misc]
 
-    def __copy__(self) -> "RayMeshIntersector":
+    def __copy__(self) -> RayMeshIntersector:
         return RayMeshIntersector(self.mesh, self._scale_to_box)
 
-    def __deepcopy__(self, memo: dict[int, Any]) -> "RayMeshIntersector":
+    def __deepcopy__(self, memo: dict[int, Any]) -> RayMeshIntersector:
         # The copy shares the mesh, as in trimesh.
         return self.__copy__()
 

@@ -1,5 +1,7 @@
 """Codecs of EXR chunks on whole arrays; codes that are read symbol by symbol are decoded in the core."""
 
+from __future__ import annotations
+
 import zlib
 from collections.abc import Sequence
 from functools import cache

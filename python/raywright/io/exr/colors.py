@@ -1,5 +1,7 @@
 """Colors of EXR files: luminance and chroma, and primaries other than those of Rec. 709."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,6 +4,8 @@ After internal_dwa_decoder.h of OpenEXR, whose cosines differ between processors
 So do ours: 1 of 3000 samples is another half, as its stored value is rounded to the other neighbour.
 """
 
+from __future__ import annotations
+
 import struct
 from collections.abc import Sequence
 from functools import cache, lru_cache

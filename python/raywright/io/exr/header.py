@@ -1,5 +1,7 @@
 """Headers of EXR files and the tables of their chunks, checked before pixels are allocated."""
 
+from __future__ import annotations
+
 import struct
 from collections.abc import Callable
 from typing import BinaryIO, NamedTuple

@@ -1,5 +1,7 @@
 """EXR files of a picture and its auxiliary buffers, in layers with the names of compositing programs."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,5 +1,7 @@
 """The decoder of each method of compression."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 

@@ -1,5 +1,7 @@
 """EXR files as arrays."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path

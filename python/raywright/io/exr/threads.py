@@ -1,5 +1,7 @@
 """Threads for the chunks of a picture: zlib, numpy and the core release the interpreter's lock."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeVar
 

@@ -1,5 +1,7 @@
 """Arrays as EXR files: one part of scan lines, packed by ZIP."""
 
+from __future__ import annotations
+
 import struct
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,5 +1,7 @@
 """glTF files, .gltf and .glb: their meshes with materials and attributes."""
 
+from __future__ import annotations
+
 import errno
 from os import PathLike
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Numbers of a glTF file: arrays from its accessors (glTF 2.0, 3.6.2)."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

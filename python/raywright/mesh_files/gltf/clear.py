@@ -1,5 +1,7 @@
 """Interiors of clear materials of a glTF file, and films on them (KHR_materials_volume, and others)."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 

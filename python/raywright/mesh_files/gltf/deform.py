@@ -1,5 +1,7 @@
 """Deformation of the meshes of a glTF file at rest: skins and blended shapes (glTF 2.0, 3.7)."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np

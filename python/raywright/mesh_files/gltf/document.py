@@ -1,5 +1,7 @@
 """A glTF file taken apart: its JSON and its bytes, from one file or from several in one folder."""
 
+from __future__ import annotations
+
 import base64
 import json
 import struct

@@ -1,5 +1,7 @@
 """Primitives that are compressed by Draco (KHR_draco_mesh_compression), by the package DracoPy."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Triangles of a glTF file: meshes from its primitives (glTF 2.0, 3.7)."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Older materials of glTF files, KHR_materials_pbrSpecularGlossiness, by trimesh."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Materials of a glTF file (glTF 2.0, 3.9, and extensions)."""
 
+from __future__ import annotations
+
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -144,7 +146,7 @@ class Materials:
             tell("the ior is left out of opaque materials that are metallic")
 
 
-def _model(part: Part, seen: "_Seen") -> Pbr:
+def _model(part: Part, seen: _Seen) -> Pbr:
     """Return the colour of a material, and how metallic and how rough it is."""
     glossy = part.extension("KHR_materials_pbrSpecularGlossiness")
     if glossy is not None:

@@ -1,5 +1,7 @@
 """Views that are compressed by meshoptimizer (EXT_meshopt_compression), by the package meshopt."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 from .part import Part

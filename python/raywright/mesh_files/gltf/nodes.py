@@ -1,5 +1,7 @@
 """Nodes of a glTF file: their transforms and contents (glTF 2.0, 3.5)."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

@@ -1,5 +1,7 @@
 """The JSON of a glTF file, read without trust: errors name their place."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 
@@ -44,16 +46,16 @@ class Part:
         """Return where something in it stands."""
         return f"{self.place}.{name}" if self.place else name
 
-    def part(self, name: str) -> "Part":
+    def part(self, name: str) -> Part:
         """Return an object in it, an empty one if there is none."""
         return Part(self._fields.get(name, {}), self.at(name))
 
-    def extension(self, name: str) -> "Part | None":
+    def extension(self, name: str) -> Part | None:
         """Return one of its extensions, None if it is not there."""
         extensions = self.part("extensions")
         return extensions.part(name) if name in extensions else None
 
-    def parts(self, name: str) -> list["Part"]:
+    def parts(self, name: str) -> list[Part]:
         """Return a list of objects in it, an empty one if there is none."""
         place = self.at(name)
         return [Part(one, f"{place}[{i}]", i) for i, one in enumerate(self._list(name))]

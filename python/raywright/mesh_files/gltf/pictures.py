@@ -1,5 +1,7 @@
 """Pictures of a glTF file, and how its textures lay them on surfaces (glTF 2.0, 3.8)."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

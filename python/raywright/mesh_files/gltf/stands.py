@@ -1,5 +1,7 @@
 """Where the meshes of a glTF file stand."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,5 +1,7 @@
 """OBJ files: their triangles, and their materials from MTL files."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 from ...io.quiet import refused

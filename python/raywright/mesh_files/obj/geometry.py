@@ -1,5 +1,7 @@
 """Triangles of an OBJ file, by their materials, in the order of the file."""
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator, Sequence
 from itertools import compress

@@ -1,5 +1,7 @@
 """Materials of OBJ files as trimesh holds them: numbers, and the picture of the base colour."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

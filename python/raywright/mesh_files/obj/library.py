@@ -1,5 +1,7 @@
 """The materials that an OBJ file names, from the libraries beside it."""
 
+from __future__ import annotations
+
 import re
 from itertools import islice
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Pictures of material libraries, and the options of the statements that name them."""
 
+from __future__ import annotations
+
 import math
 import re
 from pathlib import Path

@@ -6,6 +6,8 @@ formula of Blinn (1977); mirrors; panes; and glass that refracts. Statements for
 of writing.
 """
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

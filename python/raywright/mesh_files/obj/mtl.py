@@ -4,6 +4,8 @@ The format is "MTL material format" in "File Formats, Version 4.2" (Alias|Wavefr
 statements for physically based rendering that are in use besides it (Pr, Pm, norm, ...).
 """
 
+from __future__ import annotations
+
 import math
 import re
 from typing import NamedTuple

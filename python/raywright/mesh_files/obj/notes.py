@@ -1,5 +1,7 @@
 """Unsupported features of a file, gathered for one warning."""
 
+from __future__ import annotations
+
 from ...io.quiet import warn_caller
 from .text import told
 

@@ -1,5 +1,7 @@
 """The text of OBJ and MTL files: a statement a line."""
 
+from __future__ import annotations
+
 import re
 
 from ..tokens import plain_text

@@ -3,6 +3,8 @@
 They are read here since trimesh refuses bytes with polygons of several sizes, and reads text by lines.
 """
 
+from __future__ import annotations
+
 import re
 from pathlib import Path
 

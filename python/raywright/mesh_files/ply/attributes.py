@@ -1,5 +1,7 @@
 """Values of vertices and faces of PLY files, by name."""
 
+from __future__ import annotations
+
 import re
 from typing import Any
 

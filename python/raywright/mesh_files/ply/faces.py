@@ -1,5 +1,7 @@
 """Faces of PLY files: polygons, or strips of triangles, with the corners that they have."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

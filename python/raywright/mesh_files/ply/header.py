@@ -1,5 +1,7 @@
 """Headers of PLY files (Turk, "The PLY Polygon File Format", 1994): elements, and the properties of each."""
 
+from __future__ import annotations
+
 import re
 from typing import NamedTuple
 

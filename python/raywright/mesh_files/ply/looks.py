@@ -1,5 +1,7 @@
 """Colors and pictures of PLY files."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
 import numpy as np

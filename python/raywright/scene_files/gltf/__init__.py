@@ -1,5 +1,7 @@
 """glTF files, .gltf and .glb, with all of their visible contents."""
 
+from __future__ import annotations
+
 from os import PathLike
 
 from ...arrays import integer

@@ -1,5 +1,7 @@
 """Cameras of a glTF file (glTF 2.0, 3.10)."""
 
+from __future__ import annotations
+
 import math
 
 from ...cameras import AnyCamera, Camera, Orthographic

@@ -1,5 +1,7 @@
 """Lights of a glTF file: KHR_lights_punctual, in watts."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterator
 

@@ -1,5 +1,7 @@
 """Shapes of a glTF file: its meshes, transformed by its nodes."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Scenes in the format of Mitsuba 3, as XML files and as the dicts of its Python interface."""
 
+from __future__ import annotations
+
 from .scene import from_mitsuba
 
 __all__ = ["from_mitsuba"]

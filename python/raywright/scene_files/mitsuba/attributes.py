@@ -1,5 +1,7 @@
 """Attributes of the vertices or faces of a PLY file: colors, weights."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

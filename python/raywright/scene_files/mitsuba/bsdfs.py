@@ -1,5 +1,7 @@
 """BSDFs to materials. Most of Mitsuba's scatter on the side of the normals only: the other is black."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple

@@ -1,5 +1,7 @@
 """Internal reflection of a clear coat to its base, in Mitsuba's plastics."""
 
+from __future__ import annotations
+
 import math
 from functools import lru_cache
 

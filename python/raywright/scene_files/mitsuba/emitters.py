@@ -1,5 +1,7 @@
 """Emitters that are no surfaces: lights within a scene, and environments."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable
 from datetime import datetime, timedelta, timezone

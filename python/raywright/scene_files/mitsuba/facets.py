@@ -1,5 +1,7 @@
 """Facets and factors shared by conductors and dielectrics."""
 
+from __future__ import annotations
+
 from typing import NamedTuple, TypedDict
 
 from ...materials import (

@@ -1,5 +1,7 @@
 """Height fields of Mitsuba 0.6, as meshes."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """Indices of refraction by name."""
 
+from __future__ import annotations
+
 from .plugin import Plugin
 
 # At 589 nm and 0 to 20 °C; Hecht, "Optics", and for glasses their makers.

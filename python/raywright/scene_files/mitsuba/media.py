@@ -1,5 +1,7 @@
 """Media: what fills shapes, and the space around them."""
 
+from __future__ import annotations
+
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -143,7 +145,7 @@ def _read(plugin: Plugin, box: Box | None) -> Medium:
 
 
 def _shared(
-    plugin: Plugin, albedo: "Volume", box: Box, extinction: NDArray[np.float64], phase: Phase
+    plugin: Plugin, albedo: Volume, box: Box, extinction: NDArray[np.float64], phase: Phase
 ) -> GridMedium:
     """Return what has one extinction all over, and an albedo that goes on beyond its grid as that wraps."""
     assert albedo.numbers is not None

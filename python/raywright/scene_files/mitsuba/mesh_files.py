@@ -1,5 +1,7 @@
 """Meshes as in Mitsuba: of OBJ, PLY and its own files, its rectangle and its cube."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +35,7 @@ class Triangles(NamedTuple):
     normals: Floats | None = None
     uv: Floats | None = None
 
-    def placed(self, matrix: Matrix, flipped: bool) -> "Triangles":
+    def placed(self, matrix: Matrix, flipped: bool) -> Triangles:
         """Return them where a matrix puts them; `flipped`, with the other side outside.
 
         A matrix that mirrors turns faces round if there are normals, so that outside stays outside.

@@ -1,5 +1,7 @@
 """One plugin of a scene: its type, its place, and its parameters, each of which must be understood."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -65,7 +67,7 @@ class Context:
             value = self._named[name]
         raise SceneError(f"{where}: references are cyclic")
 
-    def warn(self, plugin: "Plugin", message: str) -> None:
+    def warn(self, plugin: Plugin, message: str) -> None:
         """Warn of a plugin, once for all of its type."""
         key = f"{plugin.type}: {message}"
         if key not in self._warned:
@@ -205,12 +207,12 @@ class Plugin:
 
         return resolve(self.text(name), self.context.folders)
 
-    def child(self, name: str) -> "Plugin | None":
+    def child(self, name: str) -> Plugin | None:
         """Return the plugin that is a parameter; None if it is none, or not there."""
         value = self.take(name)
         return Plugin(value, self._inner(name), self.context) if isinstance(value, Mapping) else None
 
-    def children(self, *types: str) -> "Iterator[Plugin]":
+    def children(self, *types: str) -> Iterator[Plugin]:
         """Yield the plugins within that are of some types, in order, whatever they are called."""
         for name, value in self.values.items():
             if name in self._left and isinstance(value, Mapping):

@@ -1,5 +1,7 @@
 """The principled models."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

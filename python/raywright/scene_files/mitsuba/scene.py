@@ -1,5 +1,7 @@
 """A whole scene, from a dict or an XML file."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Meshes of signed distance grids."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

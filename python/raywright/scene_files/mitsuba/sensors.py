@@ -1,5 +1,7 @@
 """Sensors to cameras, and their films."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping
 from typing import NamedTuple

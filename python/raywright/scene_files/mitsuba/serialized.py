@@ -1,5 +1,7 @@
 """Mitsuba's own mesh files: ``serialized``, one or several meshes, each compressed by itself."""
 
+from __future__ import annotations
+
 import struct
 import zlib
 from pathlib import Path

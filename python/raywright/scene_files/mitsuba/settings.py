@@ -1,5 +1,7 @@
 """Integrators, samplers and reconstruction filters."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import NamedTuple
 

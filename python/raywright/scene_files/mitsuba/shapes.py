@@ -1,5 +1,7 @@
 """Shapes, groups of them, and their copies."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 
@@ -247,7 +249,7 @@ class Copies:
     def __init__(self) -> None:
         self._placed: dict[int, Placed] = {}
 
-    def add(self, plugin: Plugin, to: "list[AnyShape | Placed]") -> None:
+    def add(self, plugin: Plugin, to: list[AnyShape | Placed]) -> None:
         """Put a copy of a group into a list of shapes, beside others of that group if there are any."""
         groups = list(plugin.children(GROUP))
         if len(groups) != 1:
@@ -283,13 +285,13 @@ def group(plugin: Plugin) -> tuple[Mesh | Shape, ...]:
     return tuple(found)
 
 
-def shines(one: "AnyShape | Placed") -> bool:
+def shines(one: AnyShape | Placed) -> bool:
     """Return whether a shape, or one of a group, gives off light."""
     if isinstance(one, Placed):
         return any(map(shines, one.shapes))
     return not isinstance(one, Instance) and one.emission is not None
 
 
-def instances(found: "list[Any]") -> list[AnyShape]:
+def instances(found: list[Any]) -> list[AnyShape]:
     """Return shapes with copies made instances."""
     return [one.instance() if isinstance(one, Placed) else one for one in found]

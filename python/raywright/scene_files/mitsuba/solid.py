@@ -1,5 +1,7 @@
 """Textures that are volumes: the colours of a grid, where the faces of a mesh lie in it."""
 
+from __future__ import annotations
+
 from itertools import product
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Uniform spectra, and blackbody spectra."""
 
+from __future__ import annotations
+
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,5 +1,7 @@
 """Textures: pictures and checkerboards, and values that may be textures or constants."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any
 

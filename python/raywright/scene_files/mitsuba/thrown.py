@@ -1,5 +1,7 @@
 """Textures as pictures that lights throw: what they are at given coordinates."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

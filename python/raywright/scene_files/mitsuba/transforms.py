@@ -1,5 +1,7 @@
 """Transforms as scenes give them: steps of XML, nested lists, arrays, or objects with a ``matrix``."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Any, NoReturn
 

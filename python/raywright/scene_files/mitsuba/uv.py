@@ -1,5 +1,7 @@
 """Where Mitsuba has a surface's texture coordinates, and where raywright has them."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Colours, as linear red, green and blue (Rec. 709), and spectra."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,5 +1,7 @@
 """From XML to the dicts of Mitsuba's Python interface: defaults, includes, references and transforms."""
 
+from __future__ import annotations
+
 import errno
 import re
 from collections.abc import Callable, Mapping

@@ -1,5 +1,7 @@
 """Films: their size, and the response of their sensor."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 

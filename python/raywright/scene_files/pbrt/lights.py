@@ -1,5 +1,7 @@
 """Lights and environments."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Parameters of a directive, by type and name; each of them must be understood."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from typing import Any, NoReturn
 
@@ -32,7 +34,7 @@ class Parameters:
         self.given, self.where, self.what, self.notes = dict(given), where, what, notes
         self._left = set(given)
 
-    def over(self, defaults: Given) -> "Parameters":
+    def over(self, defaults: Given) -> Parameters:
         """Return these, with the missing ones from others, which need not be understood."""
         both = Parameters({**defaults, **self.given}, self.where, self.what, self.notes)
         both._left = set(self.given)

@@ -1,5 +1,7 @@
 """A whole scene."""
 
+from __future__ import annotations
+
 import errno
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

@@ -1,5 +1,7 @@
 """Shapes."""
 
+from __future__ import annotations
+
 import gzip
 import math
 import shutil

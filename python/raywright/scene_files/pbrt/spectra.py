@@ -1,5 +1,7 @@
 """Colours and spectra, as linear red, green and blue (Rec. 709)."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

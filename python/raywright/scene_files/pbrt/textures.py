@@ -1,5 +1,7 @@
 """Textures, and values that may be textures or constants."""
 
+from __future__ import annotations
+
 import math
 import warnings
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Words of a file, and the directives that they make."""
 
+from __future__ import annotations
+
 import gzip
 import re
 import zlib
@@ -106,7 +108,7 @@ def text_of(path: Path) -> str:
     return data.decode("utf-8-sig", errors="replace").replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _parameters(words: "_Words") -> dict[str, tuple[str, list[Any]]]:
+def _parameters(words: _Words) -> dict[str, tuple[str, list[Any]]]:
     found: dict[str, tuple[str, list[Any]]] = {}
     while (word := words.next()) is not None:
         if not word.quoted:

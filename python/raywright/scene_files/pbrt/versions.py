@@ -1,5 +1,7 @@
 """The version of pbrt of a file."""
 
+from __future__ import annotations
+
 import re
 
 # Directives, types and parameters of versions 2 and 3 that version 4 does not have.

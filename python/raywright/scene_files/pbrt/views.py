@@ -1,5 +1,7 @@
 """Cameras, filters, samplers and integrators."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

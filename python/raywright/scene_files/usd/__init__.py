@@ -1,5 +1,7 @@
 """Scenes of USD: meshes with their preview surfaces, cameras and lights, by PyPI's usd-core."""
 
+from __future__ import annotations
+
 import errno
 from collections import Counter
 from pathlib import Path

@@ -1,5 +1,7 @@
 """Cameras of a USD stage."""
 
+from __future__ import annotations
+
 import math
 from typing import Any
 

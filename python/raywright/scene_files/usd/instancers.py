@@ -1,5 +1,7 @@
 """Copies of a USD stage: point instancers."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Lights of a USD stage."""
 
+from __future__ import annotations
+
 import math
 from typing import Any, NamedTuple
 

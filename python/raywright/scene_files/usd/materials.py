@@ -1,5 +1,7 @@
 """Materials of a USD stage: UsdPreviewSurface."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,5 +1,7 @@
 """Nodes of a USD material: values and connections."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 from .reading import Reading
@@ -8,7 +10,7 @@ from .reading import Reading
 class Link(NamedTuple):
     """A connection: a node, and the name of its output."""
 
-    node: "Node"
+    node: Node
     output: str
 
 

@@ -1,5 +1,7 @@
 """Errors of a USD stage by prim."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any

@@ -1,5 +1,7 @@
 """Pictures that a stage names: files, and parts of packages."""
 
+from __future__ import annotations
+
 import errno
 import tempfile
 from collections.abc import Iterator

@@ -1,5 +1,7 @@
 """Primvars of a USD stage: values at the corners of faces, or the same everywhere."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

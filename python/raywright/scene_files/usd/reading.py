@@ -1,5 +1,7 @@
 """State that all readers of a stage share."""
 
+from __future__ import annotations
+
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field

@@ -1,5 +1,7 @@
 """Shapes of a USD stage."""
 
+from __future__ import annotations
+
 from typing import Any
 
 import numpy as np

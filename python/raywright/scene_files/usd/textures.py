@@ -1,5 +1,7 @@
 """Textures of a USD material: UsdUVTexture."""
 
+from __future__ import annotations
+
 from typing import Any, NamedTuple
 
 import numpy as np
