@@ -293,18 +293,22 @@ impl SlabRays {
         simd.le(nears, fars)
     }
 
-    /// The near plane by axis (0 the lower, 1 the upper), if it is the same for all rays.
+    /// The near plane of a ray by axis: 0 the lower, 1 the upper.
     #[inline(always)]
-    pub fn first<S: Lanes<RAYS>>(&self, simd: S) -> Option<[usize; 3]> {
-        let mut first = [0; 3];
+    pub fn first(&self, i: usize) -> [usize; 3] {
+        let i = i & (RAYS - 1);
+        [0, 1, 2].map(|axis| usize::from(self.inverse[axis][i] < 0.0))
+    }
+
+    /// The mask of rays with these near planes.
+    #[inline(always)]
+    pub fn like<S: Lanes<RAYS>>(&self, simd: S, first: [usize; 3]) -> u32 {
+        let mut like = ALL;
         for axis in 0..3 {
-            first[axis] = match simd.gt(simd.splat(0.0), simd.load(&self.inverse[axis])) {
-                0 => 0,
-                ALL => 1,
-                _ => return None,
-            };
+            let down = simd.gt(simd.splat(0.0), simd.load(&self.inverse[axis]));
+            like &= if first[axis] == 1 { down } else { !down };
         }
-        Some(first)
+        like
     }
 }
 

@@ -13,7 +13,7 @@
 //! difference, and 2v + v of it for the inverse and the product. That is less than 6v·R in units of |r|.
 
 use super::WideBvh;
-use super::bests::{Bests, are_few};
+use super::bests::{self, Bests};
 use super::first::First;
 use super::hit_sink::Answer;
 use super::node::{Packed, WideNode};
@@ -32,11 +32,14 @@ const FEW: [u32; 2] = [3, 2];
 /// Maximum number of sixteens in a packet.
 const SIXTEENS: usize = 4;
 
-/// A packet of rays, all plain ([`Sixteen`]) and with the same signs along every axis.
+/// The bottom of a packet's stack.
+const BOTTOM: usize = 1;
+
+/// A packet of rays, all plain ([`Sixteen`]) and with the same signs along every axis: some rays of up to four sixteens.
 struct Packet<'a> {
     rays: &'a [Sixteen],
-    bests: [Bests; SIXTEENS],
-    /// The end of each ray in box units; −∞ for finished or missing rays.
+    bests: &'a mut [Bests; SIXTEENS],
+    /// The end of each ray in box units; −∞ for finished rays and rays of other packets.
     limits: [Column<f32>; SIXTEENS],
     bounds: PacketBounds,
     /// The near plane of all rays, by axis.
@@ -68,63 +71,85 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     let mut lone = Stacks::new::<N>(1, bvh.stack);
     let mut masks = vec![0; bvh.stack + 1 + N];
     let mut rays = [const { Sixteen::NONE }; SIXTEENS];
-    let mut start = 0;
-    while start < batch.len() {
-        let (mut first, mut together) = (None, 0);
-        while together < SIXTEENS && start + together * RAYS + FEW[0] as usize <= batch.len() {
-            let sixteen = &mut rays[together];
-            sixteen.take::<N, L, _>(simd.sixteen(), batch, start + together * RAYS, &bvh.region, bvh.axes.as_ref());
-            let here = if sixteen.plain.plain == ALL { sixteen.slabs.first(simd.sixteen()) } else { None };
-            if here.is_none() || together > 0 && here != first {
-                break;
-            }
-            (first, together) = (here, together + 1);
+    for start in (0..batch.len()).step_by(SIXTEENS * RAYS) {
+        let count = (SIXTEENS * RAYS).min(batch.len() - start);
+        let rays = &mut rays[..count.div_ceil(RAYS)];
+        let mut bests = [const { Bests::NOTHING }; SIXTEENS];
+        // The rays that wait for a packet, and those of sixteens that are not all plain.
+        let (mut waiting, mut others) = ([0; SIXTEENS], [0; SIXTEENS]);
+        for (which, sixteen) in rays.iter_mut().enumerate() {
+            sixteen.take::<N, L, _>(simd.sixteen(), batch, start + which * RAYS, &bvh.region, bvh.axes.as_ref());
+            bests[which] = Bests::none(sixteen);
+            let here = ALL >> (RAYS - RAYS.min(count - which * RAYS));
+            let to = if sixteen.plain.plain == ALL { &mut waiting } else { &mut others };
+            to[which] = here;
         }
-        let count = (RAYS * together.max(1)).min(batch.len() - start);
-        if let Some(first) = first {
-            let rays = &mut rays[..together];
-            Sixteen::unite(rays);
-            let mut packet = Packet::new(simd.sixteen(), rays, first, start, count);
-            packet.walk(simd, bvh, errand, (&mut stack, &mut masks), &mut lone);
-            for (which, bests) in packet.bests[..together].iter().enumerate() {
-                let (start, count) = (start + which * RAYS, RAYS.min(count - which * RAYS));
-                if A::ANY {
-                    errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
-                } else {
-                    refine_hits::settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
-                }
+        Sixteen::unite(rays);
+        while let Some(which) = waiting.iter().position(|&some| some != 0) {
+            let first = rays[which].slabs.first(waiting[which].trailing_zeros() as usize);
+            let mut active = [0; SIXTEENS];
+            for (which, sixteen) in rays.iter().enumerate() {
+                active[which] = waiting[which] & sixteen.slabs.like(simd.sixteen(), first);
+                waiting[which] &= !active[which];
             }
-        } else {
-            for i in start..start + count {
-                single::ask(simd, bvh, batch, i, errand, &mut lone);
+            let mut packet = Packet::new(simd.sixteen(), rays, &mut bests, first, active, start);
+            packet.walk(simd, bvh, errand, (&mut stack, &mut masks), &mut lone, active);
+        }
+        for (which, bests) in bests[..rays.len()].iter().enumerate() {
+            let (start, count) = (start + which * RAYS, RAYS.min(count - which * RAYS));
+            if A::ANY {
+                errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
+            } else {
+                refine_hits::settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
+            }
+            while others[which] != 0 {
+                let i = others[which].trailing_zeros() as usize;
+                others[which] &= others[which] - 1;
+                single::ask(simd, bvh, batch, start + i, errand, &mut lone);
             }
         }
-        start += count;
     }
     errand.winners.settle(simd.sixteen(), bvh, batch, errand.answer);
 }
 
+/// The mask of the sixteens with active rays.
+#[inline(always)]
+fn mask_of(active: &[u32; SIXTEENS]) -> u8 {
+    let mut mask = 0;
+    for which in 0..SIXTEENS {
+        mask |= u8::from(active[which] != 0) << which;
+    }
+    mask
+}
+
+/// Whether so few rays are active that they continue one by one.
+#[inline(always)]
+fn are_few(active: &[u32; SIXTEENS], mask: u8) -> bool {
+    let [a, b, c, d] = active.map(u32::count_ones);
+    a + b + c + d <= FEW[0] + FEW[1] * (mask.count_ones() - 1)
+}
+
 impl PacketBounds {
     #[inline(always)]
-    fn of<S: Lanes<RAYS>>(simd: S, rays: &[Sixteen], first: [usize; 3]) -> Self {
-        let mut earliest = simd.splat(f32::INFINITY);
-        for sixteen in rays {
-            earliest = simd.min(earliest, simd.load(&sixteen.slabs.t_min));
+    fn of<S: Lanes<RAYS>>(simd: S, rays: &[Sixteen], first: [usize; 3], active: [u32; SIXTEENS]) -> Self {
+        let (least, most) = (simd.splat(f32::NEG_INFINITY), simd.splat(f32::INFINITY));
+        let mut earliest = most;
+        for (sixteen, &active) in rays.iter().zip(&active) {
+            earliest = simd.min(earliest, simd.select(active, simd.load(&sixteen.slabs.t_min), most));
         }
         let t_min = simd.least(earliest);
         let mut bounds = Self { near: [0.0; 3], far: [0.0; 3], inverse: [[0.0; 2]; 3], t_min };
         for axis in 0..3 {
             let towards = if first[axis] == 0 { 1.0 } else { -1.0 };
-            let (mut near, mut longest) = (simd.splat(f32::NEG_INFINITY), simd.splat(f32::NEG_INFINITY));
-            let (mut far, mut shortest) = (simd.splat(f32::INFINITY), simd.splat(f32::INFINITY));
-            for sixteen in rays {
+            let (mut near, mut longest, mut far, mut shortest) = (least, least, most, most);
+            for (sixteen, &active) in rays.iter().zip(&active) {
                 let pad = simd.load(&sixteen.slabs.pad);
                 let origin = simd.mul(simd.load(&sixteen.origins()[axis]), simd.splat(towards));
-                near = simd.max(near, simd.add(origin, pad));
-                far = simd.min(far, simd.sub(origin, pad));
+                near = simd.max(near, simd.select(active, simd.add(origin, pad), least));
+                far = simd.min(far, simd.select(active, simd.sub(origin, pad), most));
                 let size = simd.abs(simd.load(&sixteen.slabs.inverse[axis]));
-                longest = simd.max(longest, size);
-                shortest = simd.min(shortest, size);
+                longest = simd.max(longest, simd.select(active, size, least));
+                shortest = simd.min(shortest, simd.select(active, size, most));
             }
             bounds.near[axis] = simd.greatest(near) * towards;
             bounds.far[axis] = simd.least(far) * towards;
@@ -135,17 +160,22 @@ impl PacketBounds {
 }
 
 impl<'a> Packet<'a> {
-    /// Create a packet of the first `count` rays.
+    /// Create a packet of the `active` rays.
     #[inline(always)]
-    fn new<S: Lanes<RAYS>>(simd: S, rays: &'a [Sixteen], first: [usize; 3], start: usize, count: usize) -> Self {
-        let none = simd.splat(f32::NEG_INFINITY);
-        let (mut limits, mut bests) = ([[f32::NEG_INFINITY; RAYS]; SIXTEENS], [const { Bests::NOTHING }; SIXTEENS]);
+    fn new<S: Lanes<RAYS>>(
+        simd: S,
+        rays: &'a [Sixteen],
+        bests: &'a mut [Bests; SIXTEENS],
+        first: [usize; 3],
+        active: [u32; SIXTEENS],
+        start: usize,
+    ) -> Self {
+        let mut limits = [[f32::NEG_INFINITY; RAYS]; SIXTEENS];
         for (which, sixteen) in rays.iter().enumerate() {
-            let here = ALL >> (RAYS - RAYS.min(count - which * RAYS));
-            simd.store(simd.select(here, simd.load(&sixteen.slabs.limit), none), &mut limits[which]);
-            bests[which] = Bests::none(sixteen);
+            let limit = simd.load(&sixteen.slabs.limit);
+            simd.store(simd.select(active[which], limit, simd.splat(f32::NEG_INFINITY)), &mut limits[which]);
         }
-        Self { rays, bests, limits, bounds: PacketBounds::of(simd, rays, first), first, start }
+        Self { rays, bests, limits, bounds: PacketBounds::of(simd, rays, first, active), first, start }
     }
 
     /// The farthest end of all rays.
@@ -156,7 +186,8 @@ impl<'a> Packet<'a> {
         simd.greatest(most)
     }
 
-    /// Traverse everything that any ray may hit. Each stack entry has a mask of the sixteens that may hit its child.
+    /// Traverse everything that any `active` ray may hit; these are all rays of the packet. Each stack entry has a mask of
+    /// the sixteens that may hit its child.
     #[inline(always)]
     fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
@@ -165,25 +196,40 @@ impl<'a> Packet<'a> {
         errand: &mut First<'_, A>,
         (stack, masks): (&mut Stacks, &mut [u8]),
         lone: &mut Stacks,
+        mut active: [u32; SIXTEENS],
     ) {
         let octant = self.first[0] | self.first[1] << 1 | self.first[2] << 2;
         let mut limit = self.last_limit(simd.sixteen());
-        let (bottom, mut index) = (1, 0);
-        let (mut top, mut mask) = (bottom, (1u8 << self.rays.len()) - 1);
-        'down: loop {
-            let node = &bvh.nodes[index];
-            let (nears, fars) = self.interval(simd, node, limit);
-            // Entries refer to a child by node and lane, which makes its box available when it is popped.
-            let mut places = [(index * N) as u32; N];
-            for (lane, place) in places.iter_mut().enumerate() {
-                *place += lane as u32;
+        let (mut top, mut child, mut mask) = (BOTTOM, Packed::ROOT, mask_of(&active));
+        loop {
+            if child.is_leaf() == 1 {
+                if self.visit_leaf::<N, L, S, A>(simd, bvh, child, active, errand) {
+                    limit = self.last_limit(simd.sixteen());
+                }
+            } else if are_few(&active, mask) {
+                for (which, mut active) in active.into_iter().enumerate() {
+                    while active != 0 {
+                        let i = active.trailing_zeros() as usize & (RAYS - 1);
+                        active &= active - 1;
+                        self.walk_alone(simd, bvh, child, which, i, errand, lone);
+                    }
+                }
+                limit = self.last_limit(simd.sixteen());
+            } else {
+                let node = &bvh.nodes[child.node()];
+                let (nears, fars) = self.interval(simd, node, limit);
+                // Entries refer to a child by node and lane, which makes its box available when it is popped.
+                let mut places = [(child.node() * N) as u32; N];
+                for (lane, place) in places.iter_mut().enumerate() {
+                    *place += lane as u32;
+                }
+                *masks[top..].first_chunk_mut::<N>().expect("as long as the stack") = [mask; N];
+                // For occlusion, nearest first is up to a sixth slower if large triangles hide much.
+                let order = if A::ANY { ASCENDING } else { node.order(octant) };
+                top += stack.push::<true, N, S>(simd, top, nears, fars, &places, order);
             }
-            *masks[top..].first_chunk_mut::<N>().expect("as long as the stack") = [mask; N];
-            // For occlusion, nearest first is up to a sixth slower if large triangles hide much.
-            let order = if A::ANY { ASCENDING } else { node.order(octant) };
-            top += stack.push::<true, N, S>(simd, top, nears, fars, &places, order);
             loop {
-                if top == bottom {
+                if top == BOTTOM {
                     return;
                 }
                 top -= 1;
@@ -193,39 +239,17 @@ impl<'a> Packet<'a> {
                     continue;
                 }
                 let (parent, lane) = (&bvh.nodes[place as usize / N], place as usize & (N - 1));
-                let (asked, child) = (masks[top], Packed::of(parent.children[lane]));
-                let mut active = [0; SIXTEENS];
-                let mut count = 0;
-                mask = 0;
+                child = Packed::of(parent.children[lane]);
+                active = [0; SIXTEENS];
                 for which in 0..self.rays.len() {
-                    if asked >> which & 1 == 1 {
+                    if masks[top] >> which & 1 == 1 {
                         active[which] = self.meeting(simd.sixteen(), which, parent, lane);
-                        mask |= u8::from(active[which] != 0) << which;
-                        count += active[which].count_ones();
                     }
                 }
-                if child.is_leaf() == 1 {
-                    if mask != 0 && self.visit_leaf::<N, L, S, A>(simd, bvh, child, active, errand) {
-                        limit = self.last_limit(simd.sixteen());
-                    }
-                    continue;
+                mask = mask_of(&active);
+                if mask != 0 {
+                    break;
                 }
-                if count == 0 {
-                    continue;
-                }
-                if count > FEW[0] + FEW[1] * (mask.count_ones() - 1) {
-                    index = child.node();
-                    continue 'down;
-                }
-                for which in 0..self.rays.len() {
-                    let mut active = active[which];
-                    while active != 0 {
-                        let i = active.trailing_zeros() as usize & (RAYS - 1);
-                        active &= active - 1;
-                        self.walk_alone(simd, bvh, child, which, i, errand, lone);
-                    }
-                }
-                limit = self.last_limit(simd.sixteen());
             }
         }
     }
@@ -241,31 +265,46 @@ impl<'a> Packet<'a> {
         active: [u32; SIXTEENS],
         errand: &First<'_, A>,
     ) -> bool {
-        let (first, count) = leaf.leaf();
-        let triangles = bvh.leaves.spread(simd, &self.rays[0].blocks, first, count);
         let mut has_changed = false;
+        let mut many = 0u32;
         for which in 0..self.rays.len() {
-            let active = active[which];
-            if active == 0 {
+            if active[which] == 0 {
                 continue;
             }
-            let (rays, bests, start) = (&self.rays[which], &mut self.bests[which], self.start + which * RAYS);
-            let from = (errand.rays, start);
-            let changed = match (A::ANY, are_few(active, leaf)) {
-                (false, false) => bests.visit::<false, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active),
-                (false, true) => bests.visit_alone::<false, N, L, S>(simd, bvh, rays, from, leaf, active),
-                (true, false) => bests.visit::<true, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active),
-                (true, true) => bests.visit_alone::<true, N, L, S>(simd, bvh, rays, from, leaf, active),
-            };
-            if changed != 0 {
-                has_changed = true;
-                self.lose_interest::<N, L, _, A>(simd.sixteen(), bvh, which, changed);
+            if !bests::are_few(active[which], leaf) {
+                many |= 1 << which;
+                continue;
             }
+            let (rays, from) = (&self.rays[which], (errand.rays, self.start + which * RAYS));
+            let bests = &mut self.bests[which];
+            let changed = if A::ANY {
+                bests.visit_alone::<true, N, L, S>(simd, bvh, rays, from, leaf, active[which])
+            } else {
+                bests.visit_alone::<false, N, L, S>(simd, bvh, rays, from, leaf, active[which])
+            };
+            has_changed |= self.lose_interest::<N, L, _, A>(simd.sixteen(), bvh, which, changed);
+        }
+        if many == 0 {
+            return has_changed;
+        }
+        let (first, count) = leaf.leaf();
+        let triangles = bvh.leaves.spread(simd, &self.rays[0].blocks, first, count);
+        while many != 0 {
+            let which = many.trailing_zeros() as usize & (SIXTEENS - 1);
+            many &= many - 1;
+            let (rays, from) = (&self.rays[which], (errand.rays, self.start + which * RAYS));
+            let bests = &mut self.bests[which];
+            let changed = if A::ANY {
+                bests.visit::<true, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active[which])
+            } else {
+                bests.visit::<false, N, L, S>(simd, bvh, rays, from, &triangles, leaf, active[which])
+            };
+            has_changed |= self.lose_interest::<N, L, _, A>(simd.sixteen(), bvh, which, changed);
         }
         has_changed
     }
 
-    /// Update the limits of some rays.
+    /// Update the limits of some rays. Return whether there are any.
     #[inline(always)]
     fn lose_interest<const N: usize, L: Leaves<N>, S: Lanes<RAYS>, A: Answer>(
         &mut self,
@@ -273,7 +312,10 @@ impl<'a> Packet<'a> {
         bvh: &WideBvh<N, L>,
         which: usize,
         changed: u32,
-    ) {
+    ) -> bool {
+        if changed == 0 {
+            return false;
+        }
         let (bests, limits) = (&mut self.bests[which], &mut self.limits[which]);
         let before = simd.load(limits);
         let limit = if A::ANY {
@@ -283,6 +325,7 @@ impl<'a> Packet<'a> {
             bests.limits(simd, bvh.region.scale / L::unit(&bvh.region), changed, before)
         };
         simd.store(limit, limits);
+        true
     }
 
     #[inline(always)]
