@@ -1,6 +1,6 @@
 //! The state of a nearest-point query, and conservative distance tests.
 //!
-//! Boxes are stored in f32, in box units ([`Region`]), rounded outward; distances to them are computed in f64. With u =
+//! Boxes are stored in f32, in box units ([`Region`]), rounded outward, and so are points for tests of boxes. With u =
 //! 2⁻⁵³ and P the point's largest coordinate in box units, the point errs by 2uP, and a box by 2u for its rounding to
 //! box units. A triangle's own distance errs by 2⁻⁴⁹ of the distance to its farthest corner, which is at most
 //! 16u·√3·(P + 2). The point is widened by 64u·(P + 2) along every axis, so that the distance to a box never exceeds
@@ -11,10 +11,13 @@
 //! Distances of up to √3·(P + √3) there are half the true ones to within 8u of themselves. In all that is less than
 //! 80u·(P + 2), and the point is widened by 128u·(P + 2).
 
+mod leaf_bounds;
+
+pub use leaf_bounds::{Brackets, LeafBounds};
 use raywright_base::math::robust::{greater, lesser, normalising_scale};
 use raywright_base::math::{Axes, DVec3, Region};
 use raywright_base::simd::Simd;
-use raywright_shapes::triangle::{length, nearest_point, point_of};
+use raywright_shapes::triangle::{NearestPoint, length, nearest_point, point_of};
 
 /// A filter that accepts or rejects primitives; without it all count.
 pub type PrimitiveFilter<'a> = Option<&'a (dyn Fn(u32) -> bool + Sync)>;
@@ -55,15 +58,15 @@ pub struct Search {
     given: DVec3,
     /// The point after moving.
     point: DVec3,
-    /// In box units, rounded down and up.
-    low: [f64; 3],
-    high: [f64; 3],
+    /// In box units by axis, rounded down and up.
+    single: [[f32; 2]; 3],
     /// Maximum distance.
     most: f64,
     /// The nearest triangle so far.
     distance: f64,
     primitive: u32,
     corners: [DVec3; 3],
+    uv: [f64; 2],
     /// A squared distance beyond which nothing can be as near.
     square: f64,
     /// The widening of the point along every axis.
@@ -106,12 +109,16 @@ impl Search {
         Some(Self {
             given: point,
             point: searched,
-            low: [x - pad, y - pad, z - pad],
-            high: [x + pad, y + pad, z + pad],
+            single: [
+                [outward(x - pad, -1.0), outward(x + pad, 1.0)],
+                [outward(y - pad, -1.0), outward(y + pad, 1.0)],
+                [outward(z - pad, -1.0), outward(z + pad, 1.0)],
+            ],
             most: max_distance,
             distance,
             primitive: u32::MAX,
             corners: [DVec3::ZERO; 3],
+            uv: [0.0; 2],
             square: limit(distance),
             pad: pad / scale,
             scale,
@@ -132,10 +139,10 @@ impl Search {
         if square > self.square {
             return false;
         }
-        let distance = nearest_point(corners, self.point).distance;
+        let NearestPoint { distance, uv } = nearest_point(corners, self.point);
         let is_nearer = distance < self.distance || (distance == self.distance && primitive < self.primitive);
         if is_nearer {
-            (self.distance, self.primitive, self.corners) = (distance, primitive, corners);
+            (self.distance, self.primitive, self.corners, self.uv) = (distance, primitive, corners, uv);
             self.square = limit(distance);
         }
         is_nearer
@@ -143,23 +150,26 @@ impl Search {
 
     /// Squared distances to boxes, given by axis and side, in their units. They never exceed those to the triangles
     /// inside, as computed by [`Search::offer`]. Infinite for empty boxes.
+    ///
+    /// In f32, a gap errs by 2⁻²⁴ of itself, its square by three times that, and the sum by two more roundings. For
+    /// these and for the rounding of [`Search::limit`], `ROOM` is subtracted.
     #[inline(always)]
-    pub fn squares<const N: usize>(&self, planes: &[[[f32; N]; 2]; 3]) -> [f64; N] {
-        let mut squares = [0.0; N];
+    pub fn squares<const N: usize, S: Simd<N>>(&self, simd: S, planes: &[[[f32; N]; 2]; 3]) -> S::F32 {
+        let mut squares = simd.splat(0.0);
         for axis in 0..3 {
-            let (low, high) = (self.low[axis], self.high[axis]);
-            for lane in 0..N {
-                let (lower, upper) = (f64::from(planes[axis][0][lane]), f64::from(planes[axis][1][lane]));
-                squares[lane] += gap(lower, upper, low, high);
-            }
+            let (lower, upper) = (simd.load(&planes[axis][0]), simd.load(&planes[axis][1]));
+            let [low, high] = self.single[axis];
+            let gap = simd.max(simd.sub(lower, simd.splat(high)), simd.sub(simd.splat(low), upper));
+            let gap = simd.max(gap, simd.splat(0.0));
+            squares = simd.mul_add(gap, gap, squares);
         }
-        squares
+        simd.mul(squares, simd.splat(1.0 - ROOM))
     }
 
-    /// Nothing at a greater squared distance than this is as near as the current result.
+    /// The position of the current result.
     #[inline(always)]
-    pub fn limit(&self) -> f64 {
-        limit(self.distance * self.scale)
+    pub fn position(&self) -> DVec3 {
+        point_of(self.corners, self.uv)
     }
 
     /// The result.
@@ -168,8 +178,7 @@ impl Search {
         if self.primitive == u32::MAX {
             return Nearest::MISS;
         }
-        let uv = nearest_point(self.corners, self.point).uv;
-        let position = point_of(self.corners, uv);
+        let (uv, position) = (self.uv, self.position());
         let distance = if self.point == self.given { self.distance } else { length(self.given - position) };
         // Distances that overflow count as misses.
         if distance <= self.most && distance.is_finite() {
@@ -180,78 +189,14 @@ impl Search {
     }
 }
 
-/// An f32 test that rejects triangles of a leaf by distance, in parallel.
-///
-/// For any vector w, a triangle is at least as far as the minimum of w · (corner − point) / |w|. With w toward the
-/// triangle's center this is tight if the triangle is small relative to its distance.
-///
-/// The bound. Let ε = 2⁻²⁴ and L bound |point| + |corner| in every coordinate. The point errs by εL, a corner by up to
-/// 4εL if it is stored as an edge in box units, and their difference by εL. The dot product with w has three terms with
-/// at most three roundings each. So it errs by 9εL·(|w₁| + |w₂| + |w₃|) and the distance by 9√3·εL < 15.6εL. 16εL is
-/// allowed, and in box units 32εL. The vector w is exact by definition; squares err by 8ε of themselves, for which 16ε
-/// are allowed.
-#[derive(Clone, Copy, Debug)]
-pub struct LeafTest {
-    /// In the units of the leaves.
-    point: [f32; 3],
-    /// The error allowed for.
-    slack: f64,
-    /// The factor from the scene's units to those of leaves.
-    scale: f64,
-}
+/// What is subtracted from squared distances in f32, and added to their limits.
+const ROOM: f32 = 1.0 / (1u32 << 20) as f32;
 
-impl LeafTest {
-    const STEP: f64 = 1.0 / (1u32 << 20) as f64;
-
-    /// Prepare a search for leaves with corners in the scene's units (`as_they_are`) or in box units.
-    #[inline(always)]
-    pub fn new(search: &Search, region: &Region, as_they_are: bool) -> Self {
-        let (point, extent, scale, step) = if as_they_are {
-            (search.point, region.extent, 1.0, Self::STEP)
-        } else {
-            (region.to_box(search.point), 2.0, region.scale, 2.0 * Self::STEP)
-        };
-        let slack = step * (point.abs().max_element() + extent);
-        Self { point: point.as_vec3().to_array(), slack, scale }
-    }
-
-    /// The squared distance beyond which triangles are rejected.
-    #[inline(always)]
-    pub fn limit(&self, search: &Search) -> f32 {
-        let distance = search.distance * self.scale + self.slack;
-        (distance * distance * (1.0 + Self::STEP)) as f32
-    }
-
-    /// The lanes with triangles that may be near enough.
-    // Written out axis by axis: closures between here and the kernel's entry are not always compiled for its SIMD
-    // level.
-    #[inline(always)]
-    pub fn not_rejected<const N: usize, S: Simd<N>>(&self, simd: S, corners: [[S::F32; 3]; 3], limit: f32) -> u32 {
-        let point = [simd.splat(self.point[0]), simd.splat(self.point[1]), simd.splat(self.point[2])];
-        let a = difference(simd, corners[0], point);
-        let b = difference(simd, corners[1], point);
-        let c = difference(simd, corners[2], point);
-        let way = [
-            simd.add(simd.add(a[0], b[0]), c[0]),
-            simd.add(simd.add(a[1], b[1]), c[1]),
-            simd.add(simd.add(a[2], b[2]), c[2]),
-        ];
-        let least = simd.min(simd.min(dot(simd, way, a), dot(simd, way, b)), dot(simd, way, c));
-        let least = simd.max(least, simd.splat(0.0));
-        // Tiny distances, which underflow, are not rejected.
-        let most = simd.mul_add(dot(simd, way, way), simd.splat(limit), simd.splat(f32::MIN_POSITIVE));
-        !simd.gt(simd.mul(least, least), most)
-    }
-}
-
+/// Round to f32, certainly down or up as `way` is −1 or 1.
 #[inline(always)]
-fn difference<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> [S::F32; 3] {
-    [simd.sub(a[0], b[0]), simd.sub(a[1], b[1]), simd.sub(a[2], b[2])]
-}
-
-#[inline(always)]
-fn dot<const N: usize, S: Simd<N>>(simd: S, a: [S::F32; 3], b: [S::F32; 3]) -> S::F32 {
-    simd.mul_add(a[2], b[2], simd.mul_add(a[1], b[1], simd.mul(a[0], b[0])))
+fn outward(x: f64, way: f32) -> f32 {
+    let x = greater(lesser(x, f64::from(f32::MAX)), f64::from(f32::MIN)) as f32;
+    x + way * (x.abs() / (1u32 << 22) as f32 + f32::MIN_POSITIVE)
 }
 
 /// The squared distance of two intervals.

@@ -13,7 +13,7 @@ use super::hit_parts::located;
 use super::hits::{ALL, HitArrays, Hits};
 use super::info::AcceleratorInfo;
 use super::instances;
-use super::rays::{BATCH, RayArguments, answer, share};
+use super::rays::{BATCH, RayArguments, answer, share, sorted_share};
 use raywright::accel::{Cost, Nearest, Primitives, TangentBalls};
 use raywright::integrators::optical_depths;
 use raywright::math::{DVec3, Hit};
@@ -320,7 +320,7 @@ impl CompiledScene {
             let (position, uv) = (position.as_slice_mut()?.as_chunks_mut().0, uv.as_slice_mut()?.as_chunks_mut().0);
             let parts = ((distance.as_slice_mut()?, position, numbers, uv), instances);
             let scene = &self.0;
-            answer(py, count, share(count), threads, parts, |start, (parts, mut instance)| {
+            answer(py, count, sorted_share(count, threads)?, threads, parts, |start, (parts, mut instance)| {
                 let (distance, position, (shape, primitive), uv) = parts;
                 let some = start..start + distance.len();
                 let of = |n: usize, i: usize| if n == 1 { 0 } else { i };

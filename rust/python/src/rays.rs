@@ -24,6 +24,17 @@ pub fn share(count: usize) -> usize {
     (count / 32).clamp(LEAST, BATCH)
 }
 
+/// Points per task if they are sorted by place: the more points, the closer are neighbors.
+pub fn sorted_share(count: usize, threads: Option<usize>) -> PyResult<usize> {
+    /// Few enough for Ctrl-C to be handled.
+    const MOST: usize = 65536;
+    if count <= LEAST {
+        return Ok(LEAST);
+    }
+    let threads = workers::pool(threads).map_err(PyRuntimeError::new_err)?.threads();
+    Ok((count / (8 * threads)).clamp(LEAST, MOST))
+}
+
 /// A batch of rays in array form: each part one for all rays, or one per ray.
 #[derive(Clone, Copy)]
 pub struct RayArrays<'a> {

@@ -65,7 +65,7 @@ pub fn sorted(references: &[Reference], bits: Bits, work: Work) -> Result<Vec<(u
 }
 
 /// Insert two zero bits between adjacent bits of the lowest 21.
-fn spread(x: u64) -> u64 {
+pub fn spread(x: u64) -> u64 {
     let x = (x | x << 32) & 0x001f_0000_0000_ffff;
     let x = (x | x << 16) & 0x001f_0000_ff00_00ff;
     let x = (x | x << 8) & 0x100f_00f0_0f00_f00f;

@@ -118,7 +118,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, E: Errand<N, L>>(
 
 /// Prefetch a child.
 #[inline(always)]
-fn fetch<const N: usize, L: Leaves<N>, S: Simd<N>>(simd: S, bvh: &WideBvh<N, L>, at: Packed) {
+pub fn fetch<const N: usize, L: Leaves<N>, S: Simd<N>>(simd: S, bvh: &WideBvh<N, L>, at: Packed) {
     let leaf = bvh.leaves.place(at.leaf().0);
     let node = bvh.nodes.as_ptr().wrapping_add(at.node()).cast::<u8>();
     // The lines of a node, and of most leaves, which may begin anywhere in a line. Prefetching exactly the needed lines
