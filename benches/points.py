@@ -1,4 +1,4 @@
-"""Closest points and signed distances beside trimesh, Open3D and libigl: points a second, and differences.
+"""Closest points, signed distances and insides beside trimesh, Open3D and libigl: rates and differences.
 
     python benches/points.py [--triangles 70000] [--points 100000] [--mesh torus --mesh bunny.ply]
 
@@ -38,6 +38,10 @@ class Raywright:
         """Return distances that are negative inside."""
         return self.scene.signed_distance(points)
 
+    def inside(self, points):
+        """Return whether each point is inside."""
+        return self.scene.contains(points)
+
 
 class Open3D(Raywright):
     """Open3D's RaycastingScene."""
@@ -64,6 +68,10 @@ class Open3D(Raywright):
         """Ask for signed distances."""
         return self.scene.compute_signed_distance(self.tensor(points)).numpy()
 
+    def inside(self, points):
+        """Ask for what a ray's crossings say."""
+        return self.scene.compute_occupancy(self.tensor(points)).numpy()
+
 
 class Libigl(Raywright):
     """libigl, which has one tree a call; with the sign of the winding number, as for any closed mesh."""
@@ -86,6 +94,10 @@ class Libigl(Raywright):
     def signed(self, points):
         """Ask for signed distances."""
         return self.igl.signed_distance(points.astype(np.float64), *self.mesh)[0]
+
+    def inside(self, points):
+        """Ask for fast winding numbers (Barill et al. 2018)."""
+        return self.igl.fast_winding_number(*self.mesh, points.astype(np.float64)) > 0.5
 
 
 class Trimesh(Raywright):
@@ -112,6 +124,10 @@ class Trimesh(Raywright):
     def signed(self, points):
         """Ask for signed distances, which are positive inside there."""
         return -self.trimesh.proximity.signed_distance(self.mesh, points)
+
+    def inside(self, points):
+        """Ask for what rays' crossings say."""
+        return self.mesh.contains(points)
 
 
 def installed():
@@ -143,7 +159,7 @@ def measured(subject, count, repeat, seed=1):
     for engine in engines:
         engine.build(subject.vertices, subject.faces)
     records = []
-    for query in ("closest", "signed"):
+    for query in ("closest", "signed", "inside"):
         expected = np.asarray(getattr(ours, query)(points), np.float64)
         for engine in engines:
             few = points[: max(round(engine.share * count), 1)]
@@ -166,10 +182,15 @@ def measured(subject, count, repeat, seed=1):
                     "points_per_second": rates[1],
                     "ratio": rates[0] / rates[1],
                     "greatest_difference": float(off.max()),
-                    "other_sign_per_million": 1e6 * float(np.mean(found * expected[: len(few)] < 0)),
+                    "other_sign_per_million": 1e6 * other_side(query, found, expected[: len(few)]),
                 }
             )
     return records
+
+
+def other_side(query, found, expected):
+    """Return the part of points that two engines see on different sides."""
+    return float(np.mean(found != expected if query == "inside" else found * expected < 0))
 
 
 def table(records):
@@ -187,10 +208,11 @@ def table(records):
             ]
         )
     ]
-    names = {"closest": "closest point", "signed": "signed distance"}
+    names = {"closest": "closest point", "signed": "signed distance", "inside": "inside"}
     for r in records:
-        sign = f"{r['other_sign_per_million']:,.0f}" if r["query"] == "signed" else "-"
-        off, ratio = f"{r['greatest_difference']:.0e}", f"{r['ratio']:.1f}"
+        sign = f"{r['other_sign_per_million']:,.0f}" if r["query"] != "closest" else "-"
+        off = f"{r['greatest_difference']:.0e}" if r["query"] != "inside" else "-"
+        ratio = f"{r['ratio']:.1f}"
         own = r["engine"] == "raywright"
         rows.append(
             line(

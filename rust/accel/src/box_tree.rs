@@ -89,6 +89,26 @@ impl BoxTree {
         }
     }
 
+    /// Return whether any number in boxes that satisfy `is_met`, or of an unbounded box, satisfies `holds`.
+    pub fn any(&self, is_met: impl Fn(&Bounds) -> bool, holds: impl Fn(u32) -> bool) -> bool {
+        fn within(
+            tree: &BoxTree,
+            node: usize,
+            is_met: &impl Fn(&Bounds) -> bool,
+            holds: &impl Fn(u32) -> bool,
+        ) -> bool {
+            let Node { bounds, first, count } = tree.nodes[node];
+            let first = first as usize;
+            is_met(&bounds)
+                && if count == 0 {
+                    within(tree, first, is_met, holds) || within(tree, first + 1, is_met, holds)
+                } else {
+                    tree.order[first..first + count as usize].iter().any(|&number| holds(number))
+                }
+        }
+        self.endless.iter().any(|&number| holds(number)) || !self.nodes.is_empty() && within(self, 0, &is_met, &holds)
+    }
+
     /// Visit boxes nearest first. `gap` is a lower bound on the distance to a box's content. `visit` is given a number
     /// and the current maximum distance, and returns the new one.
     pub fn nearest(&self, most: f64, gap: impl Fn(&Bounds) -> f64, mut visit: impl FnMut(u32, f64) -> f64) {
@@ -166,5 +186,24 @@ mod tests {
             assert!(same || visited < 200 * 60, "{visited}");
         }
         BoxTree::new(std::iter::empty()).nearest(1.0, |_| 0.0, |_, _| unreachable!());
+    }
+
+    #[test]
+    fn any_of_the_boxes_around_a_point_is_found() {
+        let size = |i: u32| place(i + 50_000) * 0.2;
+        let boxes: Vec<_> = (0..300).map(|i| Bounds { min: place(i), max: place(i) + size(i) }).collect();
+        let tree = BoxTree::new((0..).zip(boxes.iter().copied()));
+        let mut inside = 0;
+        for i in 0..2000 {
+            let point = place(10_000 + i);
+            let is_in = |b: &Bounds| point.cmpge(b.min).all() && point.cmple(b.max).all();
+            let found = tree.any(is_in, |number| is_in(&boxes[number as usize]));
+            assert_eq!(found, boxes.iter().any(is_in));
+            inside += u32::from(found);
+        }
+        assert!((200..1800).contains(&inside), "{inside}");
+        assert!(!BoxTree::new(std::iter::empty()).any(|_| true, |_| true));
+        let endless = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+        assert!(BoxTree::new([(3, endless)].into_iter()).any(|_| false, |number| number == 3));
     }
 }

@@ -221,32 +221,49 @@ impl Scene {
             return;
         }
         let within = |p: &DVec3| p.cmpge(self.region.min).all() && p.cmple(self.region.max).all();
-        let mut open: Vec<usize> = (0..points.len()).filter(|&i| within(&points[i])).collect();
+        let mut open: Vec<usize> =
+            (0..points.len()).filter(|&i| within(&points[i]) && solids.may_contain(points[i])).collect();
         let mut votes = vec![0u32; points.len()];
-        let vote = |which: &[usize], ways: &[DVec3], inside: &mut [bool], votes: &mut [u32]| {
-            for &way in ways.iter().filter(|_| !which.is_empty()) {
-                let rays: Vec<Ray> = which.iter().map(|&i| Ray::new(points[i], way)).collect();
-                for (&i, side) in which.iter().zip(solids.sides(&self.geometry, self.accelerator(), &rays)) {
-                    votes[i] += u32::from(side == Side::Inside);
-                    inside[i] |= side == Side::Surface;
-                }
+        let vote = |rays: &[Ray], which: &[usize], inside: &mut [bool], votes: &mut [u32]| {
+            for (&i, side) in which.iter().zip(solids.sides(&self.geometry, self.accelerator(), rays)) {
+                votes[i] += u32::from(side == Side::Inside);
+                inside[i] |= side == Side::Surface;
             }
         };
         if solids.is_exact() {
-            vote(&open, &WAYS_OUT[..1], inside, &mut votes);
+            let rays: Vec<Ray> = open.iter().map(|&i| self.ray_out(points[i])).collect();
+            vote(&rays, &open, inside, &mut votes);
             open.iter().for_each(|&i| inside[i] |= votes[i] == 1);
             return;
         }
+        let vote_all = |ways: &[DVec3], which: &[usize], inside: &mut [bool], votes: &mut [u32]| {
+            for &way in ways.iter().filter(|_| !which.is_empty()) {
+                let rays: Vec<Ray> = which.iter().map(|&i| Ray::new(points[i], way)).collect();
+                vote(&rays, which, inside, votes);
+            }
+        };
         let (pair, others) = WAYS_OUT.split_at(2);
-        vote(&open, pair, inside, &mut votes);
+        vote_all(pair, &open, inside, &mut votes);
         open.retain(|&i| {
             inside[i] |= votes[i] == 2;
             votes[i] == 1 && !inside[i]
         });
-        vote(&open, others, inside, &mut votes);
+        vote_all(others, &open, inside, &mut votes);
         for i in open {
             inside[i] |= 2 * votes[i] as usize > WAYS_OUT.len();
         }
+    }
+
+    /// The ray from a point along one of [`WAYS_OUT`] that leaves the scene's bounds first, and so probably crosses the
+    /// fewest surfaces.
+    fn ray_out(&self, point: DVec3) -> Ray {
+        let length = |way: &DVec3| {
+            let end = DVec3::select(way.cmpgt(DVec3::ZERO), self.region.max, self.region.min);
+            ((end - point) / *way).min_element()
+        };
+        let lengths = WAYS_OUT.map(|way| length(&way));
+        let least = (0..WAYS_OUT.len()).fold(0, |best, i| if lengths[i] < lengths[best] { i } else { best });
+        Ray::new(point, WAYS_OUT[least])
     }
 
     /// The solids that the counted surfaces enclose. The latest results are cached.

@@ -65,7 +65,11 @@ def test_signed_points_have_either_sign(monkeypatch):
     distance = rw.Scene(rw.Mesh(subject.vertices, subject.faces)).signed_distance(some)
     assert 0.1 < np.mean(distance < 0) < 0.9
     records = points.measured(subject, 100, 1)
-    assert [(r["query"], r["greatest_difference"]) for r in records] == [("closest", 0), ("signed", 0)]
+    assert [(r["query"], r["greatest_difference"]) for r in records] == [
+        ("closest", 0),
+        ("signed", 0),
+        ("inside", 0),
+    ]
 
 
 def test_a_section_is_kept_and_resumed(tmp_path, monkeypatch, capsys):

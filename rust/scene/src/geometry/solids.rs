@@ -3,8 +3,9 @@
 use super::Geometry;
 use super::front::is_front_of;
 use crate::topology::{FaceKind, NONE, Topology, rounding};
-use raywright_accel::{Accelerator, Exit, Exits, Primitives, Side};
+use raywright_accel::{Accelerator, BoxTree, Exit, Exits, Primitives, Side};
 use raywright_base::math::{DVec3, Ray};
+use raywright_shapes::Bounds;
 
 /// Marks a primitive that is not a face and encloses a solid by itself.
 const OBJECT: u32 = NONE - 1;
@@ -41,6 +42,14 @@ pub struct Solids {
     inverted: Vec<u32>,
     /// True if all surfaces close to the last bit.
     is_exact: bool,
+    /// The boxes of the bodies and other shapes; `None` if a point outside all of them may be inside.
+    boxes: Option<SolidBoxes>,
+}
+
+#[derive(Debug, Default)]
+struct SolidBoxes {
+    all: Vec<Bounds>,
+    tree: BoxTree,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +124,27 @@ impl Solids {
         }
         solids.find_cavities(geometry, accelerator);
         solids.find_inverted(geometry);
+        solids.boxes = Some(solids.boxes(geometry));
         solids
+    }
+
+    fn boxes(&self, geometry: &Geometry) -> SolidBoxes {
+        let mut all = vec![Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }; self.bodies.len()];
+        for (primitive, &of) in self.of.iter().enumerate().filter(|(_, of)| **of != NONE) {
+            let Some(bounds) = geometry.bounds(primitive as u32) else { continue };
+            match all.get_mut(of as usize) {
+                Some(body) => *body = Bounds { min: body.min.min(bounds.min), max: body.max.max(bounds.max) },
+                None => all.push(bounds),
+            }
+        }
+        let tree = BoxTree::new((0..).zip(all.iter().copied()));
+        SolidBoxes { all, tree }
+    }
+
+    /// Returns whether a point is in the box of a solid; all others are outside.
+    pub fn may_contain(&self, point: DVec3) -> bool {
+        let is_in = |bounds: &Bounds| point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
+        self.boxes.as_ref().is_none_or(|boxes| boxes.tree.any(is_in, |number| is_in(&boxes.all[number as usize])))
     }
 
     /// Adds a group: the bodies of faces with these primitive numbers.
