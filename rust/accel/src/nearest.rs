@@ -102,7 +102,8 @@ impl Search {
             point
         };
         // A region of one point has a scale of 1. Clamping huge coordinates keeps distances to its box lower bounds.
-        let [x, y, z] = region.to_box_along(axes, searched).to_array().map(|x| greater(lesser(x, 1e300), -1e300));
+        let [x, y, z] = region.to_box_along(axes, searched).to_array();
+        let [x, y, z] = [finite(x), finite(y), finite(z)];
         let (widths, scale) = if axes.is_some() { (2.0, Axes::SCALE * region.scale) } else { (1.0, region.scale) };
         let pad = widths * PAD * (greater(greater(x.abs(), y.abs()), z.abs()) + 2.0);
         let distance = if is_far { f64::INFINITY } else { max_distance };
@@ -191,6 +192,12 @@ impl Search {
 
 /// What is subtracted from squared distances in f32, and added to their limits.
 const ROOM: f32 = 1.0 / (1u32 << 20) as f32;
+
+/// Clamp to numbers whose sums are finite.
+#[inline(always)]
+fn finite(x: f64) -> f64 {
+    greater(lesser(x, 1e300), -1e300)
+}
 
 /// Round to f32, certainly down or up as `way` is −1 or 1.
 #[inline(always)]

@@ -297,7 +297,8 @@ impl SlabRays {
     #[inline(always)]
     pub fn first(&self, i: usize) -> [usize; 3] {
         let i = i & (RAYS - 1);
-        [0, 1, 2].map(|axis| usize::from(self.inverse[axis][i] < 0.0))
+        let [x, y, z] = &self.inverse;
+        [usize::from(x[i] < 0.0), usize::from(y[i] < 0.0), usize::from(z[i] < 0.0)]
     }
 
     /// The mask of rays with these near planes.

@@ -125,8 +125,9 @@ fn mask_of(active: &[u32; SIXTEENS]) -> u8 {
 /// Whether so few rays are active that they continue one by one.
 #[inline(always)]
 fn are_few(active: &[u32; SIXTEENS], mask: u8) -> bool {
-    let [a, b, c, d] = active.map(u32::count_ones);
-    a + b + c + d <= FEW[0] + FEW[1] * (mask.count_ones() - 1)
+    let [a, b, c, d] = *active;
+    let count = a.count_ones() + b.count_ones() + c.count_ones() + d.count_ones();
+    count <= FEW[0] + FEW[1] * (mask.count_ones() - 1)
 }
 
 impl PacketBounds {
