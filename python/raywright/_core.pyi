@@ -149,6 +149,14 @@ class CompiledScene:
         ``counted`` says of each shape whether it counts, and whether only what faces the ray does.
         ``fields`` has a bit for each of the five arrays to return; the others are None.
         """
+    def intersect_plain(
+        self, origins: Any, directions: Any, t_min: Any, t_max: Any
+    ) -> tuple[Any, Any, Any, Any, Any] | None:
+        """Return `intersect` of rays that need no conversion, on meshes; None for others."""
+    def occluded_plain(
+        self, origins: Any, directions: Any, t_min: Any, t_max: Any
+    ) -> NDArray[np.bool_] | None:
+        """Return `occluded` of rays that need no conversion; None for others."""
     def occluded(
         self,
         rays: _Rays,

@@ -361,6 +361,29 @@ class Hits(SurfacePoints):
     ) -> None:
         self._tell(t, shape_id, primitive_id, uv, instance_id, compiled, rays)
 
+    @classmethod
+    def _on_meshes(
+        cls,
+        t: NDArray[np.float64],
+        shape_id: NDArray[np.int32],
+        primitive_id: NDArray[np.int32],
+        uv: NDArray[np.float64],
+        instance_id: NDArray[np.int32] | None,
+        compiled: _core.CompiledScene,
+    ) -> "Hits":
+        """Return hits as `__init__` makes them, in half the time."""
+        hits = cls.__new__(cls)
+        own = hits.__dict__
+        own["t"] = t
+        own["shape_id"] = shape_id
+        own["primitive_id"] = primitive_id
+        own["uv"] = uv
+        own["_compiled"] = compiled
+        own["_rays"] = None
+        if instance_id is not None:
+            own["instance_id"] = instance_id
+        return hits
+
     def _tell_some(
         self,
         parts: dict[str, NDArray[Any]],

@@ -111,8 +111,14 @@ class Queries(PointQueries, Previews):
         >>> hits.position[0].tolist(), hits.normal[0].tolist()
         ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0])
         """
+        core = self._core
+        are_usual = threads is None and time is None and mask is None and shapes is None and cull is None
+        if core and are_usual and out is None and fields is None:
+            found = core.intersect_plain(origins, directions, t_min, t_max)
+            if found is not None:
+                return Hits._on_meshes(*found, core)
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
-        core = self._core or self._compiled()
+        core = core or self._compiled()
         what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
         if fields is not None or isinstance(out, Mapping):
             return _some_of(core, rays, what, fields, out)
@@ -165,8 +171,14 @@ class Queries(PointQueries, Previews):
         >>> scene.occluded([0, 0, 5], [0, 0, -1], t_max=3.0).item()
         False
         """
+        core = self._core
+        are_usual = threads is None and time is None and mask is None and shapes is None and cull is None
+        if core and are_usual and out is None:
+            found = core.occluded_plain(origins, directions, t_min, t_max)
+            if found is not None:
+                return found
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
-        core = self._core or self._compiled()
+        core = core or self._compiled()
         what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
         if out is not None:
             written_to("out", out, rays[4], (np.dtype(np.bool_),))

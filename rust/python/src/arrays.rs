@@ -2,8 +2,9 @@
 
 use numpy::{
     Element, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
-    PyUntypedArrayMethods,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
+use pyo3::PyTypeInfo;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -32,6 +33,27 @@ impl<'py> FromPyObject<'_, 'py> for Triples<'py> {
             Ok(array) => Ok(Self::Single(array.try_readonly()?)),
             Err(_) => Err(PyTypeError::new_err("expected an array of float32 or float64")),
         }
+    }
+}
+
+impl<'py> Triples<'py> {
+    /// An object that needs no conversion, with its leading shape: exactly a numpy array, of a float type, aligned,
+    /// C-contiguous and of shape (..., 3). `None` for all others.
+    pub fn plain(object: &Bound<'py, PyAny>) -> Option<(Self, Vec<usize>)> {
+        fn lead<T: Element>(array: &Bound<'_, PyArrayDyn<T>>) -> Option<Vec<usize>> {
+            let (&last, lead) = array.shape().split_last()?;
+            (last == 3 && array.is_c_contiguous() && array.data().is_aligned()).then(|| lead.to_vec())
+        }
+        if !object.get_type().is(PyUntypedArray::type_object(object.py())) {
+            return None;
+        }
+        if let Ok(array) = object.cast::<PyArrayDyn<f32>>() {
+            let lead = lead(array)?;
+            return Some((Self::Single(array.try_readonly().ok()?), lead));
+        }
+        let array = object.cast::<PyArrayDyn<f64>>().ok()?;
+        let lead = lead(array)?;
+        Some((Self::Double(array.try_readonly().ok()?), lead))
     }
 }
 

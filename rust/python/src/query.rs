@@ -148,6 +148,33 @@ impl CompiledScene {
         })
     }
 
+    /// `intersect` for plain rays on meshes; `None` for others.
+    fn intersect_plain<'py>(
+        &self,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_min: &Bound<'py, PyAny>,
+        t_max: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<Hits<'py>>> {
+        if self.curved() {
+            return Ok(None);
+        }
+        let rays = RayArguments::plain([origins, directions, t_min, t_max]);
+        rays.map(|rays| self.intersect(origins.py(), rays, None, None, ALL)).transpose()
+    }
+
+    /// `occluded` for plain rays; `None` for others.
+    fn occluded_plain<'py>(
+        &self,
+        origins: &Bound<'py, PyAny>,
+        directions: &Bound<'py, PyAny>,
+        t_min: &Bound<'py, PyAny>,
+        t_max: &Bound<'py, PyAny>,
+    ) -> PyResult<Option<Bound<'py, PyArrayDyn<bool>>>> {
+        let rays = RayArguments::plain([origins, directions, t_min, t_max]);
+        rays.map(|rays| self.occluded(origins.py(), rays, None, None)).transpose()
+    }
+
     #[pyo3(signature = (rays, out=None, counted=None))]
     fn occluded<'py>(
         &self,

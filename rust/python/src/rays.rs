@@ -3,6 +3,7 @@
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyFloat;
 
 use super::arrays::{Numbers, Row, Rows, Triples};
 use super::broadcast::{Repeats, some_of};
@@ -69,6 +70,24 @@ impl<'py> FromPyObject<'_, 'py> for RayArguments<'py> {
     fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let (origins, directions, t_min, t_max, shape, threads, time, mask) = object.extract()?;
         Ok(Self { origins, directions, t_min, t_max, shape, threads, time, mask })
+    }
+}
+
+impl<'py> RayArguments<'py> {
+    /// Rays that need neither conversion nor broadcasting, on all cores; `None` for others, also for wrong ones. For a
+    /// few rays, the checks and conversions of the Python package take as long as tracing.
+    pub fn plain([origins, directions, t_min, t_max]: [&Bound<'py, PyAny>; 4]) -> Option<Self> {
+        let number = |object: &Bound<'py, PyAny>| {
+            let number = object.cast_exact::<PyFloat>().ok()?.value();
+            (!number.is_nan()).then_some(Numbers::One([number]))
+        };
+        let (t_min, t_max) = (number(t_min)?, number(t_max)?);
+        let ((origins, from), (directions, along)) = (Triples::plain(origins)?, Triples::plain(directions)?);
+        if from != along && !from.is_empty() && !along.is_empty() {
+            return None;
+        }
+        let shape = if from.is_empty() { along } else { from };
+        Some(Self { origins, directions, t_min, t_max, shape, threads: None, time: None, mask: None })
     }
 }
 

@@ -1,5 +1,6 @@
 """Rays that are broadcast: answered as if each stood in an array of its own, in memory for the answer."""
 
+import math
 import subprocess
 import sys
 
@@ -118,3 +119,47 @@ print(hidden.nbytes + counts.nbytes, 1024 * (after - before))
     answer, taken = map(int, told.split())
     assert answer == 20_000_000
     assert taken < answer + 40_000_000
+
+
+def laid_out(array):
+    """Return arrays of the same numbers that numpy stores or names in other ways."""
+    unaligned = np.frombuffer(b"x" + array.tobytes(), np.uint8)[1:].view(array.dtype).reshape(array.shape)
+    return [
+        np.asfortranarray(array),
+        np.repeat(array, 2, axis=0)[::2],
+        array.astype(array.dtype.newbyteorder()),
+        unaligned,
+        array.view(np.recarray),
+        np.ma.masked_array(array),
+        array.tolist(),
+    ]
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_arrays_of_any_layout_get_the_same_answer(dtype):
+    scene = rw.Scene(rw.scenes.torus_knot(along=60, around=8))
+    scene.build()
+    # Multiples of an eighth, which lists keep.
+    rng = np.random.default_rng(3)
+    origins = (rng.integers(-8, 9, (40, 3)) / 8 + [0, 0, 5]).astype(dtype)
+    directions = (rng.integers(-4, 5, (40, 3)) / 8 - [0, 0, 4]).astype(dtype)
+    hits, occluded = scene.intersect(origins, directions), scene.occluded(origins, directions)
+    assert 5 < occluded.sum() < 35
+    for others in zip(laid_out(origins), laid_out(directions), strict=True):
+        for o, d in ((others[0], directions), (origins, others[1]), others):
+            again = scene.intersect(o, d)
+            assert type(again.t) is np.ndarray
+            assert again == hits
+            assert np.array_equal(again.t, hits.t)
+            assert np.array_equal(scene.occluded(o, d), occluded)
+    alone = scene.intersect(origins[7], directions[7])
+    assert alone.t.shape == ()
+    assert alone.t == hits.t[7]
+    assert np.array_equal(scene.intersect(origins, directions, 0, math.inf).t, hits.t)
+    for wrong in (origins[:, :2], origins[:3], origins[0, 0], origins > 0, origins * 1j):
+        with pytest.raises((ValueError, TypeError), match=r"origins|broadcast"):
+            scene.intersect(wrong, directions)
+        with pytest.raises((ValueError, TypeError), match=r"origins|broadcast"):
+            scene.occluded(wrong, directions)
+    with pytest.raises(ValueError, match="t_max must not be NaN"):
+        scene.intersect(origins, directions, t_max=math.nan)
