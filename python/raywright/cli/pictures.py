@@ -8,8 +8,8 @@ from typing import Any
 from ..io.pictures import SUFFIXES, check_writable
 from ..io.tone import DEFAULT, TONES, check_tone
 from ..materials import Diffuse
+from ..rendering.check_request import BACKGROUNDS
 from ..rendering.image import Image
-from ..rendering.render import BACKGROUNDS
 from ..rendering.render_setup import RenderSetup
 from ..scene_files.load import has_camera, load
 from ..scene_files.shown import HEIGHT, WIDTH, size_of

@@ -7,7 +7,6 @@ import json
 import os
 import threading
 import time
-import warnings
 import zlib
 from collections.abc import Mapping
 from contextlib import suppress
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from .. import _core
+from ..io.quiet import warn_caller
 
 # Least seconds between writes, also as a multiple of the time that a write takes.
 _SECONDS = 60.0
@@ -164,7 +164,7 @@ class Checkpoints:
         if self.trouble is not None:
             # If warnings are errors, this one must not cost the picture.
             with suppress(RuntimeWarning):
-                warnings.warn(self.trouble, RuntimeWarning, stacklevel=2)
+                warn_caller(self.trouble)
 
     def _header(self, text: bytes) -> dict[str, Any]:
         try:

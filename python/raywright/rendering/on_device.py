@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ from .. import _core
 from ..cameras import AnyCamera
 from ..descriptions import changed
 from ..integrators import AnyIntegrator, Path
+from ..io.quiet import warn_caller
 from ..scene.instance import AnyShape, Instance
 from ..scene.scene import Scene
 from ..shapes.mesh import face_count
@@ -151,9 +151,7 @@ class OnDevice:
     def _give_up(self, broken: Exception) -> None:
         self._lost = (str(broken).strip() or type(broken).__name__).splitlines()[0]
         self._paths = None
-        warnings.warn(
-            f"{self.name} was lost, and the CPU takes over: {self._lost}", RuntimeWarning, stacklevel=5
-        )
+        warn_caller(f"{self.name} was lost, and the CPU takes over: {self._lost}")
 
     def end(self) -> None:
         """Give the device's memory back."""

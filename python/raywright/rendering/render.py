@@ -3,58 +3,28 @@
 from __future__ import annotations
 
 import os
-import time
-import warnings as python_warnings
 from collections.abc import Callable, Iterable
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING
 
-from numpy.typing import NDArray
-
-from .. import _core
-from ..arrays import SeedLike, integer, positive, seed_number, thread_limit
+from ..arrays import SeedLike
 from ..cameras import AnyCamera
-from ..debug_log import debug
-from ..integrators import AnyIntegrator, Path, ProgressivePhotonMap, check_integrator
-from ..integrators.base import Integrator
+from ..integrators import AnyIntegrator, Path
 from ..scene.scene import Scene
-from .aovs import covers, names_of, seen
-from .auto_options import StoppedError, followed
-from .build_image import doubted, doubts, made, overall
-from .choices import Limits, chosen, waves
-from .denoising import check_method
+from .check_request import Stop, check_options, check_picture
+from .choose_options import choose
 from .filters import BoxFilter, Filter
-from .halves import halves_of
+from .finish_image import finish
 from .image import Image
-from .interrupts import ON_INTERRUPT, unless_terminated
-from .job import Job
-from .notebook import display
-from .on_device import OnDevice, check_device
-from .partial_image import AtRest, ImageSoFar, Sight
-from .photon_bias import is_gathered, rate, with_bias
-from .progress import Report, bar
+from .run_render import RenderRun, unless_stopped
 from .samplers import Sampler, Unnamed
-from .snapshots import Snapshots
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from ..gpu import Gpu
-    from .checkpoints import Checkpoints
 
 _PATH = Path()
 _FILTER: Filter = BoxFilter()
-_DEFAULT_SAMPLES = 64
-# Samples per pixel for first hits.
-_AOV_SAMPLES = 16
-BACKGROUNDS = ("shown", "transparent")
-
-
-class Stop(Protocol):
-    """A request to stop a render, such as a `threading.Event`."""
-
-    def is_set(self) -> bool:
-        """Return True if the render should stop."""
 
 
 def render(
@@ -223,317 +193,17 @@ def render(
     >>> bool((image.rgb == again.rgb).all())
     True
     """
-    checked = check(
+    picture = check_picture(
         scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
     )
-    limits, seed, threads, clamp = checked
-    unnamed = sampler.why if isinstance(sampler, Unnamed) else None
-    if isinstance(sampler, Unnamed):
-        sampler = None
-    if not (callable(progress) or isinstance(progress, bool)):
-        raise TypeError(f"progress must be True, False or a function, got {progress!r}")
-    show = progress if callable(progress) else display() if progress else None
-    if stop is not None and not callable(getattr(stop, "is_set", None)):
-        raise TypeError(f"stop must be a threading.Event or the like, got {type(stop).__name__}")
-    if executor is not None:
-        # Imported here, because only distributed renders need it (import time).
-        from concurrent.futures import Executor
-
-        if not isinstance(executor, Executor):
-            raise TypeError(f"executor must be a concurrent.futures.Executor, got {type(executor).__name__}")
-    for name, value, choices in (
-        ("background", background, BACKGROUNDS),
-        ("on_interrupt", on_interrupt, ON_INTERRUPT),
-    ):
-        if value not in choices:
-            raise ValueError(f"{name} must be one of {', '.join(choices)}, got {value!r}")
-    if not isinstance(halves, bool):
-        raise TypeError(f"halves must be True or False, got {halves!r}")
-    if not isinstance(denoise, bool | str):
-        raise TypeError(f"denoise must be True, False or the name of a method, got {denoise!r}")
-    method = (
-        check_method("denoise", denoise) if isinstance(denoise, str) else "regression" if denoise else None
+    options = check_options(
+        progress, checkpoint, executor, aov, stop, background, on_interrupt, halves, denoise, device
     )
-    apart = halves or method is not None
-    if device is not None:
-        check_device(device)
-    names = names_of(aov)
-    kept, begun = None, {}
-    if checkpoint is not None:
-        if not isinstance(checkpoint, str | os.PathLike):
-            raise TypeError(f"checkpoint must be a path, got {type(checkpoint).__name__}")
-        # Imported here, because only checkpoints need it (import time).
-        from .checkpoints import Checkpoints, held
-
-        begun = held(checkpoint)
     if executor is None:
         # Compiled here, so that warnings point to the caller.
-        scene._compiled(progress is True)
-    there, began = None, time.monotonic()
-    if device is not None:
-        others = {
-            "adaptive=True": adaptive,
-            "clamp": clamp is not None,
-            "background='transparent'": background == "transparent",
-            "halves=True": halves,
-            "denoise": method is not None,
-            "checkpoint": checkpoint is not None,
-            "executor": executor is not None,
-        }
-        there = OnDevice(device, scene, camera, integrator, seed, others, sampler, filter)
-    prepared = time.monotonic() - began
-    if there is not None and there.works:
-        integrator, sampler, plan = there.plan(integrator)
-    else:
-        photons = isinstance(integrator, ProgressivePhotonMap)
-        sampler, plan = chosen(sampler, limits, adaptive, begun.get("sampler"), apart, photons)
-        if unnamed is not None:
-            plan = plan.explained("sampler", unnamed)
-
-    def look() -> None:
-        if stop is not None and stop.is_set():
-            raise StoppedError
-
-    looks, spent = None if stop is None else look, 0.0
-    if isinstance(integrator, Path) and not (there is not None and there.works):
-        what = scene, camera, limits, threads, clamp, filter
-        integrator, rows, spent = followed(integrator, *what, begun, looks)
-        plan = replace(plan, rows=plan.rows + rows, path=integrator)
-    if there is not None and not there.works:
-        plan = replace(plan, rows=(there.row(), *plan.rows))
-    plan = replace(plan, rows=plan.rows + waves(scene))
-    for row in plan.rows:
-        debug("render: %s: %s (%s)", row.what, row.chosen, row.why)
-    transparent = background == "transparent"
-    job = Job(scene, camera, integrator, seed, adaptive, clamp, sampler, filter, transparent, apart)
-    if checkpoint is not None:
-        kept = Checkpoints(checkpoint, job.identity())
-    rendering = _begun(kept, job, threads)
-    # The time of the pilot counts as part of the render.
-    rendering.spend(spent + prepared)
-    sight = _core.Sight(rendering)
-    # Integrators written in Python run on the thread that shows pictures.
-    alone = isinstance(integrator, Integrator)
-    snapshots = None if show is None else Snapshots(show, 1 if alone else threads or _core.cores())
-
-    def whole(done: _core.Rendering, told: Iterable[str] = ()) -> Image:
-        return made(done, clamp, {"samples": done.counts} if adaptive else {}, told, plan)
-
-    def outline(done: _core.Rendering) -> dict[str, Any]:
-        return overall(done) | {"plan": plan, "_doubts": tuple(doubts(done))}
-
-    def so_far(seen: Sight) -> ImageSoFar:
-        return ImageSoFar.of(seen, whole, outline, (camera.width, camera.height), adaptive)
-
-    def look_on() -> bool:
-        look()
-        if snapshots is None or not snapshots.due:
-            return False
-        if sight.is_open:
-            snapshots.take(lambda: so_far(sight), lambda: sight.is_done)
-            return False
-        # Between passes a picture needs the render to pause.
-        return True
-
-    def wait() -> float | None:
-        return None if kept is None else kept.wait()
-
-    def rest() -> None:
-        if kept is not None and kept.wait() == 0:
-            kept.write_beside(rendering)
-        if snapshots is not None and snapshots.due:
-            snapshots.take(lambda: so_far(AtRest(rendering)), lambda: True)
-
-    def keep() -> None:
-        # A render that could not begin leaves no checkpoint.
-        if kept is not None and rendering.aim:
-            kept.write(rendering)
-
-    def run(report: Report | None) -> list[str]:
-        told: list[str] = []
-
-        def work() -> None:
-            nonlocal plan
-            if there is not None and there.works:
-                if there.run(rendering, limits, report, rest, look):
-                    return
-                told.append(f"{there.row().why}, and the CPU went on")
-                plan = replace(plan, rows=(there.row(), *plan.rows[1:]))
-            broken = []
-            if executor is not None:
-                broken = _elsewhere(rendering, job, executor, limits, threads, report, rest, look)
-                told.extend(broken)
-            if executor is None or broken:
-                _here(rendering, job, limits, threads, report, wait, rest, looks if show is None else look_on)
-
-        try:
-            look()
-            if kept is None:
-                work()
-            else:
-                unless_terminated(work, keep)
-        except StoppedError:
-            told.extend(_unseen(rendering, "stopped"))
-        except KeyboardInterrupt as interrupt:
-            if on_interrupt == "raise":
-                interrupt.image = whole(rendering, _unseen(rendering, "interrupted"))  # type: ignore[attr-defined]
-                raise
-            told += ["interrupted by Ctrl-C", *_unseen(rendering, "interrupted")]
-        finally:
-            keep()
-            if there is not None:
-                there.end()
-        return told + ([kept.trouble] if kept is not None and kept.trouble else [])
-
-    if progress is True:
-        with bar(*limits, rate(integrator)) as report:
-            problems = run(report)
-    else:
-        problems = run(None)
-    found: dict[str, NDArray[Any]] = {"samples": rendering.counts} if adaptive else {}
-    found |= seen(scene, camera, names, _AOV_SAMPLES, seed, threads)
-    asked = (*names, "alpha") if transparent else names
-    known = covers(rendering, job, asked, None, threads)
-    found |= {name: array for name, array in known.items() if name in names}
-    image = made(rendering, clamp, found, problems, plan, known["alpha"] if transparent else None)
-    image = doubted(image, scene)
-    if rendering.dropped and isinstance(integrator, Integrator):
-        _warn_of_written(integrator, rendering.dropped)
-    if is_gathered(integrator):
-        image = with_bias(image, limits[1], rendering, job, threads, looks)
-    if apart:
-        image = replace(image, halves=halves_of(rendering, scene, camera, seed, threads))
-    if method is not None:
-        image = _denoised(image, method, threads)
-    if show is not None:
-        show(image)
-    return image
-
-
-def _warn_of_written(integrator: Integrator, dropped: int) -> None:
-    """Warn of negative or infinite radiance that a Python integrator returned: a mistake in it."""
-    python_warnings.warn(
-        f"{type(integrator).__name__}.radiance must return finite numbers that are at least 0, and did not "
-        f"for {dropped} sample{'' if dropped == 1 else 's'}, which count as black",
-        RuntimeWarning,
-        stacklevel=3,
-    )
-
-
-class Checked(NamedTuple):
-    """The checked arguments of `render`, as the core takes them."""
-
-    limits: Limits
-    seed: int
-    threads: int | None
-    clamp: float | None
-
-
-def check(
-    scene: Scene,
-    camera: AnyCamera,
-    integrator: AnyIntegrator,
-    samples: int | None,
-    error: float | None,
-    seconds: float | None,
-    seed: SeedLike,
-    threads: int | None,
-    adaptive: bool,
-    clamp: float | None,
-    sampler: Sampler | Unnamed | None,
-    filter: Filter,
-) -> Checked:
-    """Raise a TypeError or a ValueError if the arguments of `render` contradict each other."""
-    for name, value, kind in (
-        ("scene", scene, Scene),
-        ("camera", camera, AnyCamera),
-    ):
-        if not isinstance(value, kind):
-            told = kind.__name__.removeprefix("Any")
-            raise TypeError(f"{name} must be a raywright.{told}, got {type(value).__name__}")
-    check_integrator("integrator", integrator)
-    if not isinstance(adaptive, bool):
-        raise TypeError(f"adaptive must be True or False, got {adaptive!r}")
-    if sampler is not None and not isinstance(sampler, Sampler | Unnamed):
-        raise TypeError(f"sampler must be one of raywright's, got {type(sampler).__name__}")
-    if not isinstance(filter, Filter):
-        raise TypeError(f"filter must be one of raywright's, got {type(filter).__name__}")
-    samples = None if samples is None else integer("samples", samples, 1, 2**32 - 1)
-    error = None if error is None else positive("error", error)
-    seconds = None if seconds is None else positive("seconds", seconds)
-    clamp = None if clamp is None else positive("clamp", clamp)
-    if samples is None and error is None and seconds is None:
-        samples = _DEFAULT_SAMPLES
-    seed = seed_number(seed)
-    threads = thread_limit(threads)
-    return Checked((samples, error, seconds), seed, threads, clamp)
-
-
-def _unseen(rendering: _core.Rendering, how: str) -> list[str]:
-    """Return the warnings about pixels without samples, in a picture that ended so."""
-    return [] if rendering.counts.all() else [f"{how} before every pixel had a sample"]
-
-
-def _here(
-    rendering: _core.Rendering,
-    job: Job,
-    limits: Limits,
-    threads: int | None,
-    report: Report | None,
-    wait: Callable[[], float | None],
-    rest: Callable[[], None],
-    look: Callable[[], bool | None] | None,
-) -> None:
-    """Render in this process; `rest` is called whenever `wait` is over, or `look` has said so."""
-    compiled = job.scene._compiled()
-    while not rendering.go_on(job.core, compiled, threads, *limits, wait(), report, look):
-        rest()
-
-
-def _elsewhere(
-    rendering: _core.Rendering,
-    job: Job,
-    executor: Executor,
-    limits: Limits,
-    threads: int | None,
-    report: Report | None,
-    rest: Callable[[], None],
-    look: Callable[[], None],
-) -> list[str]:
-    """Render by an executor; if it breaks, return what there is to say of that."""
-    # Imported here, because only distributed renders need it (import time).
-    from .executor import BrokenError, Distribution
-
-    def look_and_rest() -> None:
-        look()
-        rest()
-
-    distribution = Distribution(rendering, job, executor, limits, threads or 1)
-    try:
-        distribution.run(report, look_and_rest)
-    except BrokenError as error:
-        return [f"the executor broke, and the rest was rendered here: {error}"]
-    finally:
-        for message in distribution.told:
-            python_warnings.warn(message, RuntimeWarning, stacklevel=4)
-    return []
-
-
-def _begun(kept: Checkpoints | None, job: Job, threads: int | None) -> _core.Rendering:
-    """Return an empty render, or that of a checkpoint."""
-    patch = job.patch()
-    film = None if kept is None else kept.read(_core.Rendering.most_bytes(job.core))
-    if kept is None or film is None:
-        return _core.Rendering(job.core, threads, patch)
-    try:
-        return _core.Rendering.from_bytes(film, job.core, threads, patch)
-    except ValueError as error:
-        kept.refuse(f"is damaged: {error}")
-
-
-def _denoised(image: Image, method: str, threads: int | None) -> Image:
-    """Return the denoised image, or the image as it is with a warning."""
-    if image.halves is None:
-        few = "not denoised: a quarter of the samples is less than a batch of them"
-        return replace(image, warnings=(*image.warnings, few))
-    return image.denoise(method, threads=threads)
+        scene._compiled(options.has_bar)
+    look = None if stop is None else lambda: unless_stopped(stop)
+    chosen = choose(picture, options, look)
+    run = RenderRun(picture, options, chosen)
+    problems = run.run()
+    return finish(picture, options, chosen.job, run.rendering, run.plan, problems, look)

@@ -11,8 +11,8 @@ from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..io.tone import DEFAULT, check_tone
 from ..rendering.build_image import shines
+from ..rendering.check_request import check_picture
 from ..rendering.filters import BoxFilter, Filter
-from ..rendering.render import check
 from ..rendering.samplers import Sampler
 from ..scene.framing import framed
 from ..scene.scene import Scene
@@ -288,7 +288,7 @@ def view(
         camera = framed(scene.shapes)
         if not shines(scene):
             scene = lit(scene.shapes, camera)
-    checked = check(
+    checked = check_picture(
         scene, camera, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
     )
     how: dict[str, Any] = {

@@ -92,7 +92,7 @@ def test_imports_are_read() -> None:
     """Of each way to import there is one that is known."""
     known = {
         "cli": "scene_files.load",
-        "rendering.render": "rendering.executor",
+        "rendering.run_render": "rendering.executor",
         "scene.scene": "_core",
         "scene.instance": "shapes.mesh",
         "__init__": "viewer",
