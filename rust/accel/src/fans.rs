@@ -91,10 +91,29 @@ pub fn sticks() -> Vec<[Vec3; 3]> {
     (0..600).map(stick).collect()
 }
 
-/// Soups of all sizes: many triangles, so few that one leaf holds all, large ones, and a part of the planes.
+/// Layers of squares, each square halved along one diagonal and again along the other. Rays hit pairs of triangles at
+/// the same `t`, and more of them where layers of different directions cross.
+fn touching() -> Vec<[Vec3; 3]> {
+    let mut all = Vec::new();
+    for k in 0..18 {
+        let (axis, z) = (k % 3, (k / 3) as f32 / 8.0 - 0.3);
+        for (i, j) in (0..4).flat_map(|i| (0..4).map(move |j| (i as f32 / 2.0 - 1.0, j as f32 / 2.0 - 1.0))) {
+            let [a, b, c, d] = [(0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.0, 0.5)].map(|(u, v)| {
+                let mut corner = [z; 3];
+                (corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (i + u, j + v);
+                Vec3::from_array(corner)
+            });
+            all.extend([[a, b, c], [a, c, d], [b, c, d], [d, a, b]]);
+        }
+    }
+    all
+}
+
+/// Soups of all sizes: many triangles, so few that one leaf holds all, large ones, a part of the planes, and
+/// touching layers.
 pub fn soups() -> Vec<Vec<[Vec3; 3]>> {
     let all = soup();
     let large = |i: u32| [0, 1, 2].map(|k| (1.2 * triple(3 * i + k + 70_000)).as_vec3());
     let few: Vec<_> = (0..12).map(large).collect();
-    vec![all.clone(), few[..1].to_vec(), few, all[all.len() - 64..].to_vec()]
+    vec![all.clone(), few[..1].to_vec(), few, all[all.len() - 64..].to_vec(), touching()]
 }

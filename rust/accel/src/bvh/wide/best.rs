@@ -73,11 +73,26 @@ impl Best {
         match about(leaves, ray, leaf, lane) {
             About::Missed => return,
             About::Between(low, _) if low * unit > f64::from(self.high) => return,
-            About::Between(low, high) if high * unit < f64::from(self.low) => {
-                *self = Self { low: between(low * unit).0, high: between(high * unit).1, leaf, lane };
-                return;
+            About::Between(low, high) => {
+                let new = Self { low: between(low * unit).0, high: between(high * unit).1, leaf, lane };
+                if high * unit < f64::from(self.low) {
+                    *self = new;
+                    return;
+                }
+                // For long thin triangles, f32 may know `t` only to a hundredth.
+                if self.leaf != Packed::NONE
+                    && let About::Between(old_low, old_high) = about(leaves, ray, self.leaf, self.lane)
+                {
+                    (self.low, self.high) = (between(old_low * unit).0, between(old_high * unit).1);
+                    if high < old_low {
+                        *self = new;
+                    }
+                    if high < old_low || low > old_high {
+                        return;
+                    }
+                }
             }
-            _ => {}
+            About::Open => {}
         }
         let Some(new) = meet(leaves, ray, leaf, lane) else { return };
         if self.leaf != Packed::NONE
