@@ -27,7 +27,7 @@ struct QueueEntry {
 
 /// Triangles of a leaf that may be the nearest.
 #[derive(Clone, Copy)]
-struct Open<const N: usize> {
+struct UndecidedLeaf<const N: usize> {
     leaf: Packed,
     lanes: u32,
     brackets: Brackets<N>,
@@ -46,8 +46,11 @@ impl<const N: usize, L: Leaves<N>> Kernel<N> for Points<'_, N, L> {
     fn run<S: Simd<N>>(self, simd: S) {
         let Self { bvh, points, max_distances, counts, nearest } = self;
         let mut stack = vec![QueueEntry { square: 0.0, child: Packed::NONE }; bvh.stack + N];
-        let mut walk =
-            Walk { bvh, counts, open: [Open { leaf: Packed::NONE, lanes: 0, brackets: Brackets::NONE }; OPEN] };
+        let mut walk = Walk {
+            bvh,
+            counts,
+            open: [UndecidedLeaf { leaf: Packed::NONE, lanes: 0, brackets: Brackets::NONE }; OPEN],
+        };
         // A point is as near to the next point's nearest triangle at most as the last point's nearest position.
         let mut last = None;
         let order = by_place(points);
@@ -94,7 +97,7 @@ fn by_place(points: &[DVec3]) -> Vec<(u64, u32)> {
 struct Walk<'a, const N: usize, L> {
     bvh: &'a WideBvh<N, L>,
     counts: PrimitiveFilter<'a>,
-    open: [Open<N>; OPEN],
+    open: [UndecidedLeaf<N>; OPEN],
 }
 
 impl<const N: usize, L: Leaves<N>> Walk<'_, N, L> {

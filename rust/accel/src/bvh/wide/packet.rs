@@ -35,7 +35,7 @@ const SIXTEENS: usize = 4;
 /// The bottom of a packet's stack.
 const BOTTOM: usize = 1;
 
-/// A packet of rays, all plain ([`Sixteen`]) and with the same signs along every axis: some rays of up to four sixteens.
+/// A packet of rays, all plain ([`Sixteen`]) and with the same signs along every axis, from up to four sixteens.
 struct Packet<'a> {
     rays: &'a [Sixteen],
     bests: &'a mut [Bests; SIXTEENS],
@@ -187,8 +187,8 @@ impl<'a> Packet<'a> {
         simd.greatest(most)
     }
 
-    /// Traverse everything that any `active` ray may hit; these are all rays of the packet. Each stack entry has a mask of
-    /// the sixteens that may hit its child.
+    /// Traverse everything that any `active` ray may hit; these are all rays of the packet. Each stack entry has a mask
+    /// of the sixteens that may hit its child.
     #[inline(always)]
     fn walk<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         &mut self,
