@@ -216,8 +216,9 @@ class PointQueries:
         """
         core = self._core or self._compiled()
         distance = core.nearest(*nearest_arguments(points, np.inf, threads), _mask(shapes, core))[0]
-        inside = self._inside(points, threads, shapes) & (distance > 0)
-        return np.asarray(np.where(inside, -distance, distance))
+        # In place, without two more arrays of its size.
+        np.negative(distance, out=distance, where=self._inside(points, threads, shapes) & (distance > 0))
+        return distance
 
 
 def _mask(shapes: ShapeMask | None, core: CompiledScene) -> list[bool] | None:

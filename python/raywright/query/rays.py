@@ -102,7 +102,8 @@ def nearest_arguments(
     """Return checked points and distances as the core takes them: both, their leading shape, and threads."""
     array, shape, threads = point_arguments(points, threads)
     most = _distances("max_distance", max_distance)
-    if np.min(most, initial=0.0) < 0:
+    # For one number, np.min takes longer than the query of one point.
+    if (most if isinstance(most, float) else np.min(most, initial=0.0)) < 0:
         raise ValueError(f"max_distance must be at least 0, got {np.min(most)}")
     if isinstance(most, np.ndarray):
         try:
