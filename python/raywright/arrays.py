@@ -116,6 +116,19 @@ def frozen(array: NDArray[Any]) -> NDArray[Any]:
     return copy
 
 
+def sealed(array: NDArray[Any]) -> NDArray[Any]:
+    """Return the array, which can be read only from now on."""
+    array.setflags(write=False)
+    return array
+
+
+def same(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
+    """Return whether two arrays are equal, or neither is there; NaN is equal to NaN."""
+    if a is None or b is None:
+        return a is b
+    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+
+
 def triple(name: str, value: ArrayLike) -> Triple:
     """Return three finite numbers as a tuple of floats."""
     array = real_array(name, value)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..io.pictures import check_writable
 from ..materials import Diffuse
 from ..mesh_files.meshes import load
-from ..query.hits import SurfacePoints
+from ..query.surface_points import SurfacePoints
 from ..scene.scene import Scene
 from ..shapes.joined import joined
 from ..shapes.mesh import Mesh, replaced

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..query.hits import SurfacePoints
+from ..query.surface_points import SurfacePoints
 from ..scene.scene import Scene
 from ..scene_files.mitsuba.mesh_files import smooth_normals
 from ..shapes.mesh import Mesh

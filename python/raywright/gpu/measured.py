@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..materials import Conductor, metal_index
-from ..query.interactions import Interactions, Rays
+from ..query.interactions import Interactions
+from ..query.ray_batch import Rays
 from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 

@@ -14,7 +14,7 @@ from ..locks import Lock
 from ..query.gpu_arrays import flat_arrays
 from ..query.hits import Hits
 from ..query.masks import asked
-from ..query.queries import known_by
+from ..query.ray_queries import known_by
 from ..query.rays import AskedRays, ray_arguments
 from ..scene.scene import Scene
 from .kernels import Kernels

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..query.interactions import Rays
+from ..query.ray_batch import Rays
 from .rng import Rng
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from ..arrays import SeedLike, integer, positive, seed_number
-from ..query.hits import SurfacePoints
+from ..query.surface_points import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene, SceneLike
 from .places import Floats, Places, frames, places, scene_of, unit

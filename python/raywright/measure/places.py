@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import last_axis
-from ..query.hits import ClosestPoints, SurfacePoints
+from ..query.closest_points import ClosestPoints
+from ..query.surface_points import SurfacePoints
 from ..scene.scene import Scene, SceneLike, as_scene
 from ..shapes.mesh import Mesh
 

@@ -12,7 +12,7 @@ from ..arrays import choice, last_axis
 from ..foreign_arrays import as_array, describe
 from ..io.plots import plotted
 from ..io.value_plots import AXES, COLORS, Axis, bar, draw_faces, draw_points, frame, scale
-from ..query.hits import SurfacePoints
+from ..query.surface_points import SurfacePoints
 from ..query.tabular import Tabular
 from ..scene.scene import Scene, SceneLike
 from .places import Floats

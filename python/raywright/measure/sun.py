@@ -12,7 +12,7 @@ from ..arrays import real_array
 from ..lights.sun_position import sun_directions as directions_at
 from ..lights.sun_position import way
 from ..lights.times import Time, Times, one_or_many
-from ..query.hits import SurfacePoints
+from ..query.surface_points import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import SceneLike
 from .places import Floats, places, scene_of, unit, units

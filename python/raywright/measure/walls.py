@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import choice
-from ..query.hits import ClosestPoints, SurfacePoints
+from ..query.closest_points import ClosestPoints
+from ..query.surface_points import SurfacePoints
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import Scene, SceneLike
 from .places import Floats, Places, middles, places, scene_of

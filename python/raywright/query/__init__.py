@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from .all_hits import AllHits
+from .closest_points import ClosestPoints
 from .cones import ConeCoverage, ConeFaces
 from .gpu_arrays import GpuArrays
-from .hits import ClosestPoints, Hits, TraversalCost
-from .interactions import BsdfSamples, Interactions, LightSamples, Rays, power_heuristic
+from .hits import Hits
+from .interactions import Interactions
+from .mis_weights import power_heuristic
 from .photons import Photons
+from .ray_batch import Rays
+from .scattering_samples import BsdfSamples, LightSamples
 from .spawned_rays import SpawnedRays
 from .surface import Surface
+from .traversal_cost import TraversalCost
 from .trees import TreeBoxes
 
 __all__ = [

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..arrays import sealed
 from . import rows
-from .hits import Hits, SurfacePoints, chosen, restored, sealed
+from .hits import Hits
 from .surface import Surface
+from .surface_points import SurfacePoints, chosen, restored
 
 # Values of a miss.
 _MISSES = {"t": np.inf, "shape_id": -1, "primitive_id": -1, "uv": 0.0, "instance_id": -1}

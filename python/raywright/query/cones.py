@@ -9,8 +9,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import real_array
-from .hits import same, sealed
+from ..arrays import real_array, same, sealed
 from .rays import Floats, ray_arguments, spread
 from .tabular import Tabular
 

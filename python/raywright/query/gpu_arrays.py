@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import FlatScene
-from .hits import sealed
+from ..arrays import sealed
 
 NODE = np.dtype([("lower", "<f4", 3), ("index", "<u4"), ("upper", "<f4", 3), ("count", "<u4")])
 TRIANGLE = np.dtype(

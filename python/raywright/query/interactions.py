@@ -2,194 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import last_axis, real_array
-
-Floats = NDArray[np.float64]
-
-
-class Occluding(Protocol):
-    """An object that tests rays for occlusion: a scene."""
-
-    def occluded(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        t_min: ArrayLike = ...,
-        t_max: ArrayLike = ...,
-        threads: int | None = ...,
-        time: ArrayLike | None = ...,
-    ) -> NDArray[np.bool_]:
-        """See `Scene.occluded`."""
-        ...
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Rays:
-    """A batch of rays.
-
-    Attributes
-    ----------
-    origins, directions : (N, 3) float64
-        Directions are unit.
-    time : (N,) float64
-        Times of the rays, from 0 as the shutter opens to 1 as it closes.
-
-    See Also
-    --------
-    Scene.interactions : Takes them.
-
-    Examples
-    --------
-    >>> rays = rw.query.Rays(np.zeros((2, 3)), np.array([[0, 0, 1.0], [1.0, 0, 0]]), np.zeros(2))
-    >>> rays.directions.shape
-    (2, 3)
-    """
-
-    origins: Floats
-    directions: Floats
-    time: Floats
-
-    def __post_init__(self) -> None:
-        for name, tail in (("origins", (3,)), ("directions", (3,)), ("time", ())):
-            array = _numbers(name, getattr(self, name))
-            object.__setattr__(self, name, array)
-            if array.shape[1:] != tail or array.ndim != 1 + len(tail) or len(array) != len(self.origins):
-                shapes = [np.shape(getattr(self, part)) for part in ("origins", "directions", "time")]
-                raise ValueError(f"rays must have shapes (N, 3), (N, 3) and (N,), got {shapes}")
-
-    def __len__(self) -> int:
-        return len(self.directions)
-
-    def __getitem__(self, which: Any) -> Rays:
-        return Rays(self.origins[which], self.directions[which], self.time[which])
-
-    def __repr__(self) -> str:
-        return f"Rays({len(self)})"
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class BsdfSamples:
-    """Directions drawn from the scattering at surfaces.
-
-    Attributes
-    ----------
-    direction : (N, 3) float64
-        Unit directions that paths go on to; NaN where nothing is scattered.
-    weight : (N, 3) float64
-        Scattering function times cosine over density: the factor of the throughput; 0 where nothing is
-        scattered.
-    pdf : (N,) float64
-        Density in solid angle; infinite where a single direction has all of it, as with a mirror.
-
-    See Also
-    --------
-    Interactions.sample_bsdf : Makes it.
-
-    Examples
-    --------
-    >>> rays = rw.query.Rays(np.array([[0, 0, 3.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
-    >>> met = rw.Scene(rw.Sphere(material=rw.Mirror(0.9))).interactions(rays)
-    >>> mirrored = met.reflected()
-    >>> mirrored.direction.tolist(), mirrored.weight.tolist(), mirrored.any.tolist()
-    ([[0.0, 0.0, 1.0]], [[0.9, 0.9, 0.9]], [True])
-    """
-
-    direction: Floats
-    weight: Floats
-    pdf: Floats
-
-    @property
-    def any(self) -> NDArray[np.bool_]:
-        """Mask of points that scatter something: (N,) bool."""
-        return np.asarray(self.weight.any(axis=1))
-
-    def __len__(self) -> int:
-        return len(self.pdf)
-
-    def __repr__(self) -> str:
-        return f"BsdfSamples({len(self)})"
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class LightSamples:
-    """Light drawn from the lights of a scene, on its way to surfaces.
-
-    Attributes
-    ----------
-    direction : (N, 3) float64
-        Unit directions that it comes from; NaN where there is none.
-    weight : (N, 3) float64
-        Radiance over density, were nothing in between; 0 where there is none.
-    pdf : (N,) float64
-        Density in solid angle; infinite for lights without extent.
-
-    See Also
-    --------
-    Interactions.sample_light : Makes it.
-
-    Examples
-    --------
-    >>> scene = rw.Scene(rw.Sphere(), lights=[rw.PointLight((0, 0, 3), intensity=4.0)])
-    >>> rays = rw.query.Rays(np.array([[0, 0, 5.0]]), np.array([[0, 0, -1.0]]), np.zeros(1))
-    >>> light = scene.interactions(rays).sample_light(np.zeros(1), np.full((1, 2), 0.5))
-    >>> light.direction.tolist(), light.weight.round(9).tolist()
-    ([[0.0, 0.0, 1.0]], [[1.0, 1.0, 1.0]])
-    """
-
-    direction: Floats
-    weight: Floats
-    pdf: Floats
-    _segments: tuple[Floats, Floats, Floats]
-    _time: Floats
-
-    def visible(self, scene: Occluding, which: ArrayLike | None = None) -> NDArray[np.bool_]:
-        """Return whether nothing is in between: (N,) bool.
-
-        Parameters
-        ----------
-        scene : Scene
-            The scene that it was drawn from.
-        which : (N,) bool array, optional
-            Mask of samples to test; the others count as hidden. The default is all that bring light.
-
-        Returns
-        -------
-        (N,) bool
-            False for samples that are hidden, bring no light, or are not in `which`.
-
-        See Also
-        --------
-        Scene.occluded : Test any rays.
-
-        Examples
-        --------
-        >>> lid = rw.Disk((0, 0, 2), radius=0.1)
-        >>> scene = rw.Scene([rw.Plane(), lid], lights=[rw.PointLight((0, 0, 3), intensity=4.0)])
-        >>> rays = rw.query.Rays(np.array([[0, 0, 1.0], [5, 0, 1]]), np.array([[0, 0, -1.0]] * 2),
-        ... np.zeros(2))
-        >>> light = scene.interactions(rays).sample_light(np.zeros(2), np.full((2, 2), 0.5))
-        >>> light.visible(scene).tolist()
-        [False, True]
-        """
-        asked = self.weight.any(axis=1) if which is None else np.asarray(which, np.bool_)
-        origins, directions, most = (part[asked] for part in self._segments)
-        result = np.zeros(len(self), np.bool_)
-        result[asked] = ~scene.occluded(origins, directions, t_max=most, time=self._time[asked])
-        return result
-
-    def __len__(self) -> int:
-        return len(self.pdf)
-
-    def __repr__(self) -> str:
-        return f"LightSamples({len(self)})"
+from .ray_batch import Floats, Rays, numbers, vectors
+from .scattering_samples import BsdfSamples, LightSamples
 
 
 class Interactions:
@@ -357,7 +177,7 @@ class Interactions:
         >>> (value * np.pi).round(6).tolist(), (pdf * np.pi).round(6).tolist()
         ([[0.5, 0.5, 0.5]], [1.0])
         """
-        return self._core.evaluate(_vectors("directions", directions))
+        return self._core.evaluate(vectors("directions", directions))
 
     def sample_bsdf(self, choice: Floats, u: Floats) -> BsdfSamples:
         """Sample directions from the scattering at the points.
@@ -386,7 +206,7 @@ class Interactions:
         >>> drawn.weight.round(6).tolist(), bool(drawn.direction[0, 2] > 0)
         ([[0.5, 0.5, 0.5]], True)
         """
-        return BsdfSamples(*self._core.sample_bsdf(_numbers("choice", choice), _numbers("u", u)))
+        return BsdfSamples(*self._core.sample_bsdf(numbers("choice", choice), numbers("u", u)))
 
     def sample_light(self, choice: Floats, u: Floats) -> LightSamples:
         """Sample light that reaches the points from the scene's lights.
@@ -419,7 +239,7 @@ class Interactions:
         [[1.0, 1.0, 1.0]]
         """
         (direction, weight, origins, ways), most, pdf = self._core.sample_light(
-            _numbers("choice", choice), _numbers("u", u)
+            numbers("choice", choice), numbers("u", u)
         )
         return LightSamples(direction, weight, pdf, (origins, ways, most), self.rays.time)
 
@@ -476,49 +296,8 @@ class Interactions:
         >>> met.spawn_rays(np.array([[0, 0, 1.0]])).origins.round(9).tolist()
         [[0.0, 0.0, 0.0]]
         """
-        ways = _vectors("directions", directions)
+        ways = vectors("directions", directions)
         return Rays(self._core.spawn_rays(ways), ways, self.rays.time)
 
     def __repr__(self) -> str:
         return f"Interactions({len(self)}, {int(np.count_nonzero(self.hit))} hit)"
-
-
-def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
-    """Return the power heuristic's weight of samples of density `pdf`, beside a strategy of density `other`.
-
-    The exponent is 2 (Veach and Guibas 1995); infinite densities get the weight 1, and 0 the weight 0.
-
-    Parameters
-    ----------
-    pdf, other : float or arrays
-        Densities in the same measure, at least 0.
-
-    Returns
-    -------
-    float64 array
-        Weights from 0 to 1; those of the two strategies add up to 1.
-
-    See Also
-    --------
-    Interactions.light_pdf : The density of light sampling.
-
-    Examples
-    --------
-    >>> rw.query.power_heuristic([3.0, np.inf, 0.0], 1.0).round(9).tolist()
-    [0.9, 1.0, 0.0]
-    """
-    mine, others = np.broadcast_arrays(_numbers("pdf", pdf), _numbers("other", other))
-    with np.errstate(over="ignore"):
-        ratio = np.divide(others, mine, out=np.full(mine.shape, np.inf), where=mine > 0)
-        return np.asarray(1.0 / (1.0 + ratio * ratio))
-
-
-def _vectors(name: str, value: ArrayLike) -> Floats:
-    array = np.ascontiguousarray(last_axis(name, value, 3), np.float64)
-    if array.ndim != 2:
-        raise ValueError(f"{name} must have shape (N, 3), got {array.shape}")
-    return array
-
-
-def _numbers(name: str, value: ArrayLike) -> Floats:
-    return np.ascontiguousarray(real_array(name, value), np.float64)

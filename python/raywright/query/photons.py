@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import SeedLike, Triple, integer, seed_number, thread_limit
-from .hits import same, sealed
+from ..arrays import SeedLike, Triple, integer, same, sealed, seed_number, thread_limit
 
 Floats = NDArray[np.float64]
 # Bounces recorded, one bit each.
@@ -137,7 +136,7 @@ _ARRAYS = tuple(field.name for field in fields(Photons) if field.name not in _FL
 def photon_arguments(
     count: int, max_depth: int | None, roulette_depth: int, seed: SeedLike, threads: int | None
 ) -> tuple[int, int | None, int, int, int | None]:
-    """Return the arguments of `Queries.photons`, checked."""
+    """Return the arguments of `LightQueries.photons`, checked."""
     return (
         integer("count", count, 1, 2**31 - 1),
         None if max_depth is None else integer("max_depth", max_depth, 1, 2**32 - 1),

@@ -8,23 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .. import _core
-from .._core import CompiledScene
 from ..arrays import colour, number, thread_limit, triple
 from ..cameras import AnyCamera
 from ..lights import DirectionalLight, PointLight
+from .compilable import Compilable
 from .rays import written_to
 
 _HEADLIGHT = "headlight"
 _TYPES = (np.dtype(np.uint8), np.dtype(np.float32))
 
 
-class Previews:
-    """Pictures that a compiled scene draws at once; asking compiles it."""
-
-    _core: CompiledScene | None
-
-    def _compiled(self) -> CompiledScene:
-        raise NotImplementedError
+class Previews(Compilable):
+    """Pictures that a compiled scene draws at once; the first one compiles it."""
 
     def preview(
         self,

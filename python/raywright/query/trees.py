@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .hits import sealed
+from ..arrays import sealed
 
 
 @dataclass(frozen=True, eq=False, repr=False)

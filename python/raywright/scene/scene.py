@@ -2,35 +2,27 @@
 
 from __future__ import annotations
 
-import os
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from typing import Any, Literal, Protocol, TypeAlias, TypeVar, get_args
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .. import _core
 from ..accelerators import BVH, Accelerator
 from ..arrays import choice
-from ..debug_log import debug
 from ..lights import Environment, Light, environments
 from ..lights import lights as checked_lights
-from ..locks import Lock
 from ..media.medium import Medium
 from ..media.medium import medium as checked_medium
-from ..query.gpu_arrays import GpuArrays, flat_arrays
 from ..query.masks import names_of
-from ..query.queries import Queries
-from ..query.trees import TreeBoxes
-from ..shapes.mesh import face_count, has_noise, moved
+from ..shapes.mesh import has_noise
 from ..shapes.welding import Weld, weld_tolerance
-from .instance import AnyShape, Instance, Shapes, closed, meshes
+from .built_once import BuiltOnce
+from .instance import AnyShape, Shapes, closed, meshes
+from .moved_shapes import moved_shapes
 from .plan import Plan, PlanRow
-from .progress import BuildProgress, check_progress, watcher
-from .shown import scene_html
-from .unpickle_cache import Arrival
+from .shown import scene_html, scene_repr
 from .wavelengths import reason
 
 Precision: TypeAlias = Literal["auto", "single", "double"]
@@ -58,7 +50,7 @@ class Device(Protocol[Held]):
         """Hold a scene during a ``with`` block."""
 
 
-class Scene(Queries):
+class Scene(BuiltOnce):
     """Shapes, lights and media; the first query compiles them for rays.
 
     A scene is immutable, except that `refit` moves its vertices. Many threads may query it at once. Large
@@ -171,6 +163,7 @@ class Scene(Queries):
         shading_normals: ShadingNormals = "faded",
         weld: Weld = "auto",
     ) -> None:
+        super().__init__()
         self._weld, self._tolerance = weld, weld_tolerance(weld)
         self._shapes = meshes(shapes, weld)
         self._has_noise = any(map(has_noise, self._shapes))
@@ -188,17 +181,8 @@ class Scene(Queries):
         self._medium = checked_medium("medium", medium)
         surroundings = self._environment if isinstance(self._environment, tuple) else (self._environment,)
         self._wavelengths = reason(self._shapes, (*self._lights, *surroundings, self._medium))
-        self._core: _core.CompiledScene | None = None
-        self._has_arrived = False
-        # A compiled scene of the same shapes.
-        self._alike: _core.CompiledScene | None = None
-        self._is_loss_told = False
         # The same shapes with corners welded, for measurements.
         self._closed: tuple[tuple[AnyShape, ...], Scene] | None = None
-        # Progress callbacks run in the building thread, which must not wait for itself.
-        self._lock = Lock()
-        # Process id of the builder: a build by another thread of the parent does not continue after a fork.
-        self._building = 0
 
     @property
     def shapes(self) -> tuple[AnyShape, ...]:
@@ -254,30 +238,6 @@ class Scene(Queries):
     def wavelengths(self) -> str | None:
         """The reason for spectral rendering; None where red, green and blue do."""
         return self._wavelengths
-
-    @property
-    def accelerator_info(self) -> _core.AcceleratorInfo:
-        """Statistics of the built accelerator: kind, nodes, leaves, depth, bytes, build_seconds, sah_cost.
-
-        Its `precision` is that of the vertices that it holds, "single" or "double"; instances have their own.
-        """
-        return self._compiled().accelerator
-
-    @property
-    def bytes(self) -> int:
-        """Bytes that the compiled scene holds: accelerators, faces, vertices with all they have, transforms.
-
-        Textures do not count.
-        """
-        return self._compiled().bytes
-
-    @property
-    def bounds(self) -> NDArray[np.float64] | None:
-        """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene.
-
-        Infinite shapes, such as a `Plane`, do not count.
-        """
-        return self._compiled().bounds
 
     def replace(self, **changes: Any) -> Scene:
         """Return a copy of the scene with some arguments changed.
@@ -370,7 +330,7 @@ class Scene(Queries):
         >>> scene.intersect([0.2, 0.2, 5], [0, 0, -1]).t.item()
         3.0
         """
-        after = Scene(self._moved(vertices), *self._parts()[1:])
+        after = Scene(moved_shapes(self._shapes, vertices), *self._parts()[1:])
         with self._unless_building():
             core = self._core and self._core.refitted(after)
             built, self._shapes, self._core = self._core is not None, after.shapes, core
@@ -378,80 +338,8 @@ class Scene(Queries):
         if core is None and built:
             core = self._compiled()
         elif core is not None:
-            self._tell_loss(core, stacklevel=3)
+            self._tell_loss(core)
         return core.growth if core else 1.0
-
-    def build(self, progress: BuildProgress = True) -> None:
-        """Compile the scene for rays now; otherwise the first query does.
-
-        Parameters
-        ----------
-        progress : bool or callable
-            Whether to show a bar on stderr where it takes longer than two seconds. Or a function that is
-            called with the share that is done, from 0 to 1 and never less than before: ten times a second at
-            most, and in the end with 1. An exception of the function ends the build; the function cannot
-            query the scene. If a query compiles the scene, there is a bar if stderr is a terminal.
-
-        Raises
-        ------
-        TypeError
-            If `progress` is anything else.
-        ValueError
-            If something in the scene cannot be.
-        KeyboardInterrupt
-            At once, when Ctrl-C is pressed, as in any query that compiles the scene. The scene is unchanged,
-            and can be compiled again.
-
-        See Also
-        --------
-        Scene.rebuild : Build the accelerator anew.
-
-        Examples
-        --------
-        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
-        >>> shares = []
-        >>> scene.build(progress=shares.append)
-        >>> shares[-1]
-        1.0
-        """
-        check_progress(progress)
-        self._compiled(progress)
-
-    def rebuild(self, progress: BuildProgress = True) -> None:
-        """Build the accelerator anew, for where the vertices are now.
-
-        Parameters
-        ----------
-        progress : bool or callable
-            As for `build`.
-
-        Raises
-        ------
-        TypeError, KeyboardInterrupt
-            As `build` does.
-
-        See Also
-        --------
-        Scene.refit : Move the vertices without a new accelerator.
-
-        Examples
-        --------
-        >>> knot = rw.scenes.torus_knot(along=40, around=8)
-        >>> scene = rw.Scene(knot)
-        >>> scene.build(progress=False)
-        >>> growth = scene.refit(knot.vertices * [1, 3, 1])
-        >>> scene.accelerator_info.kind.endswith("refitted")
-        True
-        >>> scene.rebuild(progress=False)
-        >>> scene.accelerator_info.kind.endswith("refitted")
-        False
-        """
-        check_progress(progress)
-        with self._unless_building():
-            # Builds again even if an unpickled scene could reuse a cached one.
-            self._core, self._has_arrived = None, False
-            self._alike = None
-        self._compiled(progress)
 
     def welded(self) -> Scene:
         """Return the scene with its meshes welded: corners that differ by rounding are merged, by `weld`.
@@ -484,22 +372,6 @@ class Scene(Queries):
         scene = self.welded() if self._has_noise and self._tolerance is None else self
         return scene._core or scene._compiled()
 
-    def _moved(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> tuple[AnyShape, ...]:
-        count = len(self._shapes)
-        if count == 1 and isinstance(self._shapes[0], Instance):
-            only = vertices[0] if isinstance(vertices, list) and len(vertices) == 1 else vertices
-            return (self._shapes[0] if only is None else _elsewhere(self._shapes[0], "vertices", only),)
-        given = list(vertices) if isinstance(vertices, list | tuple) else None
-        if count == 1 and not (given and len(given) == 1 and (given[0] is None or np.ndim(given[0]) == 2)):
-            return (_elsewhere(self._shapes[0], "vertices", vertices),)
-        if given is None or len(given) != count:
-            came = "an array" if given is None else str(len(given))
-            raise ValueError(f"vertices must be a list of {_counted(count, 'array')}, got {came}")
-        return tuple(
-            shape if to is None else _elsewhere(shape, f"vertices[{i}]", to)
-            for i, (shape, to) in enumerate(zip(self._shapes, given, strict=True))
-        )
-
     def plan(self) -> Plan:
         """Return a table of the features that the scene needs or leaves out, and the kernel that renders it.
 
@@ -525,64 +397,6 @@ class Scene(Queries):
         """
         kernel, rows = _core.plan(self._compiled())
         return Plan(kernel, tuple(PlanRow(*row) for row in rows))
-
-    def tree_boxes(self) -> TreeBoxes:
-        """Return the boxes of the accelerator's nodes, from the root down.
-
-        Returns
-        -------
-        TreeBoxes
-            All nodes, each level after the one above.
-
-        Raises
-        ------
-        ValueError
-            If the accelerator has no boxes: grids, BSP trees and `BruteForce` have none.
-
-        See Also
-        --------
-        report.tree : Plot the boxes of a tree.
-        Scene.gpu_arrays : The tree as arrays for graphics processors.
-
-        Examples
-        --------
-        >>> scene = rw.Scene(rw.scenes.torus_knot(along=40, around=8))
-        >>> boxes = scene.tree_boxes()
-        >>> boxes.depth[:3].tolist(), boxes.corners.shape[1:]
-        ([0, 1, 1], (8, 3))
-        >>> int(boxes.primitives[boxes.leaf].sum()) >= 40 * 8 * 2
-        True
-        """
-        boxes = _core.tree_boxes(self._compiled())
-        if boxes is None:
-            kind = type(self._accelerator).__name__
-            raise ValueError(f"a {kind} has no tree of boxes: use BVH, KdTree or Octree")
-        depth, primitives, corners = boxes
-        return TreeBoxes(depth, primitives, corners.reshape(-1, 8, 3))
-
-    def gpu_arrays(self) -> GpuArrays:
-        """Return the scene as arrays without pointers, as graphics processors take it.
-
-        A binary tree is built for it, as the accelerator says if that is a `BVH`, and as the default does
-        otherwise; a scene that moves later is not followed.
-
-        Returns
-        -------
-        GpuArrays
-            Nodes of 32 bytes, triangles of 48, and where they are.
-
-        See Also
-        --------
-        Scene.tree_boxes : The boxes of the accelerator.
-        Scene.on_device : Hold the scene on a graphics processor.
-
-        Examples
-        --------
-        >>> flat = rw.Scene(rw.scenes.torus_knot(along=40, around=8)).gpu_arrays()
-        >>> len(flat.triangles), flat.nodes.dtype.itemsize
-        (640, 32)
-        """
-        return flat_arrays(_core.FlatScene(self._compiled(), self._accelerator, self._quality, True))
 
     def on_device(self, device: Device[Held]) -> AbstractContextManager[Held]:
         """Copy the scene to a device, which then answers ray queries.
@@ -622,63 +436,6 @@ class Scene(Queries):
         held: AbstractContextManager[Held] = hold(self)
         return held
 
-    @contextmanager
-    def _unless_building(self) -> Iterator[None]:
-        """Wait for another thread that builds the scene."""
-        with self._lock:
-            if self._building and self._building == os.getpid():
-                raise RuntimeError("the scene is being built: its progress function cannot query it")
-            yield
-
-    def _compiled(self, progress: BuildProgress | None = None) -> _core.CompiledScene:
-        with self._unless_building():
-            if self._core is not None:
-                if callable(progress):
-                    progress(1.0)
-                return self._core
-            arrival = Arrival.of(self) if self._has_arrived else None
-            if arrival is not None and (core := arrival.core()) is not None:
-                if callable(progress):
-                    progress(1.0)
-                self._core = core
-                return core
-            self._building = os.getpid()
-            try:
-                compiled = self._alike and self._alike.refitted(self)
-                if compiled is None:
-                    with watcher(progress) as report:
-                        compiled = _core.CompiledScene(self, self._accelerator, report)
-                elif callable(progress):
-                    progress(1.0)
-                self._core, self._alike = compiled, None
-                _log_build(compiled)
-                if arrival is not None:
-                    arrival.keep(compiled)
-            finally:
-                self._building = 0
-        if compiled.dropped:
-            faces = sum(map(face_count, self._shapes))
-            warnings.warn(
-                f"{compiled.dropped} of {faces} faces were dropped: a corner is NaN or infinite",
-                RuntimeWarning,
-                stacklevel=3,
-            )
-        self._tell_loss(compiled, stacklevel=4)
-        return compiled
-
-    def _tell_loss(self, compiled: _core.CompiledScene, stacklevel: int) -> None:
-        """Warn once of digits lost by rounding to float32."""
-        if compiled.loss is None or self._is_loss_told:
-            return
-        self._is_loss_told = True
-        moved, share = compiled.loss
-        warnings.warn(
-            f'precision="single" moves vertices by up to {moved:.3g}, {share:.2g} of the extent of their '
-            'mesh; "auto" and "double" keep them where they are',
-            RuntimeWarning,
-            stacklevel=stacklevel,
-        )
-
     def _parts(self) -> tuple[Any, ...]:
         """Return the arguments of the scene, in their order."""
         return (
@@ -715,41 +472,13 @@ class Scene(Queries):
         return scene_html(self)
 
     def __repr__(self) -> str:
-        faces = sum(map(face_count, self._shapes))
-        parts = [f"{_counted(len(self._shapes), 'shape')}", _counted(faces, "face")]
-        if self._lights:
-            parts.append(_counted(len(self._lights), "light"))
-        if self._environment is not None:
-            parts.append(repr(self._environment))
-        parts.append(repr(self._accelerator))
-        parts += [f"precision={self._precision!r}"] if self._precision != "auto" else []
-        parts += [f"quality={self._quality!r}"] if self._quality != "medium" else []
-        parts += [f"medium={self._medium!r}"] if self._medium is not None else []
-        parts += [f"shading_normals={self._shading_normals!r}"] if self._shading_normals != "faded" else []
-        parts += [f"weld={self._weld!r}"] if self._weld != "auto" else []
-        return f"Scene({', '.join(parts)})"
+        return scene_repr(self)
 
 
 def _arrived(*parts: Any) -> Scene:
     scene = Scene(*parts)
     scene._has_arrived = True
     return scene
-
-
-def _log_build(compiled: _core.CompiledScene) -> None:
-    info = compiled.accelerator
-    what = info.kind, info.primitives, info.build_seconds, info.nodes, info.precision, compiled.bytes
-    debug("scene built: %s of %d primitives in %.4f s, %d nodes, %s precision, %d bytes", *what)
-
-
-def _elsewhere(shape: AnyShape, name: str, to: Any) -> AnyShape:
-    if not isinstance(shape, Instance):
-        return moved(shape, name, to)
-    return shape.moved(*to) if isinstance(to, tuple) else shape.moved(to)
-
-
-def _counted(count: int, name: str) -> str:
-    return f"{count} {name}{'' if count == 1 else 's'}"
 
 
 SceneLike: TypeAlias = Scene | Shapes

@@ -1,4 +1,4 @@
-"""A scene as a table that notebooks show."""
+"""A scene as a line of text, and as a table that notebooks show."""
 
 from __future__ import annotations
 
@@ -11,6 +11,13 @@ from .instance import Instance
 
 # A scene of this many faces compiles in some 50 ms, fast enough for a display.
 _QUICK = 100_000
+_DEFAULTS = {
+    "precision": "auto",
+    "quality": "medium",
+    "medium": None,
+    "shading_normals": "faded",
+    "weld": "auto",
+}
 
 
 def scene_html(scene: Any) -> str:
@@ -18,9 +25,25 @@ def scene_html(scene: Any) -> str:
 
     A large scene that is not compiled is not compiled for that.
     """
-    return html_table(
-        f"Scene of {len(scene.shapes)} shape{'' if len(scene.shapes) == 1 else 's'}", (), _rows(scene)
-    )
+    return html_table(f"Scene of {_counted(len(scene.shapes), 'shape')}", (), _rows(scene))
+
+
+def scene_repr(scene: Any) -> str:
+    """Return a scene in one line: numbers of its parts, and arguments other than the defaults."""
+    parts = [_counted(len(scene.shapes), "shape"), _counted(sum(map(face_count, scene.shapes)), "face")]
+    if scene.lights:
+        parts.append(_counted(len(scene.lights), "light"))
+    if scene.environment is not None:
+        parts.append(repr(scene.environment))
+    parts.append(repr(scene.accelerator))
+    for name, default in _DEFAULTS.items():
+        if (value := getattr(scene, name)) != default:
+            parts.append(f"{name}={value!r}")
+    return f"Scene({', '.join(parts)})"
+
+
+def _counted(count: int, name: str) -> str:
+    return f"{count} {name}{'' if count == 1 else 's'}"
 
 
 def _rows(scene: Any) -> Iterator[tuple[str, str]]:

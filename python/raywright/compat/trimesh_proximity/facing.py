@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ...query.hits import ClosestPoints
+from ...query.closest_points import ClosestPoints
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -1,27 +1,23 @@
-"""The questions that points ask of a scene."""
+"""Queries of points: inside or outside, the closest point, the signed distance."""
 
 from __future__ import annotations
-
-import warnings
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import CompiledScene
-from .hits import ClosestPoints
+from ..io.quiet import warn_caller
+from .closest_points import ClosestPoints
+from .compilable import Compilable
 from .masks import ShapeMask, counted, names_of
 from .rays import nearest_arguments, point_arguments
 
 
-class PointQueries:
-    """Point queries; the first query compiles the scene."""
+class PointQueries(Compilable):
+    """Queries of points; the first one compiles the scene."""
 
-    _core: CompiledScene | None
     _tolerance: float | None
     _is_inverted_told = False
-
-    def _compiled(self) -> CompiledScene:
-        raise NotImplementedError
 
     def _enclosing(self) -> CompiledScene:
         """Return the scene whose meshes are welded, which decides what is closed."""
@@ -101,11 +97,9 @@ class PointQueries:
             known = names_of(core.shapes)
             names = ", ".join(f"{i} {known[i]!r}" if known[i] else str(i) for i in inverted[:5])
             more = f" and {len(inverted) - 5} more" if len(inverted) > 5 else ""
-            warnings.warn(
+            warn_caller(
                 f"normals of shape {names}{more} point inward and are treated as outward; flip them by "
-                "Mesh(vertices, faces[:, ::-1])",
-                RuntimeWarning,
-                stacklevel=3,
+                "Mesh(vertices, faces[:, ::-1])"
             )
         return found
 
