@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BruteForce:
-    """No structure at all: every ray is tested against every primitive. The oracle for the others.
+    """No structure: every ray is tested against every primitive. The reference for all other accelerators.
 
     See Also
     --------

@@ -29,12 +29,13 @@ class BVH:
 
         - ``"binned"``: by the surface area heuristic at a few planes on each axis (Wald 2007, "On fast
           construction of SAH-based bounding volume hierarchies").
-        - ``"sweep"``: by the surface area heuristic wherever a set can be parted along an axis (MacDonald and
+        - ``"sweep"``: by the surface area heuristic at every possible split along an axis (MacDonald and
           Booth 1990, "Heuristics for ray tracing using space subdivision").
-        - ``"spatial"``: by the surface area heuristic with spatial splits, which part what straddles a plane
-          (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume hierarchies"). If many
-          primitives are long and diagonal, they are cut into pieces before (Ernst and Greiner 2007, "Early
-          split clipping for bounding volume hierarchies"). A scene that moves has to build it again.
+        - ``"spatial"``: by the surface area heuristic with spatial splits, which divide primitives that
+          straddle a plane (Stich, Friedrich and Dietrich 2009, "Spatial splits in bounding volume
+          hierarchies"). If many primitives are long and diagonal, they are first cut into pieces (Ernst and
+          Greiner 2007, "Early split clipping for bounding volume hierarchies"). `Scene.refit` has to rebuild
+          such a tree.
         - ``"morton"``: a linear tree in the order of Morton codes of 63 bits (Lauterbach et al. 2009, "Fast
           BVH construction on GPUs").
         - ``"ploc"``: from the bottom up (Meister and Bittner 2018, "Parallel locally-ordered clustering for
@@ -42,55 +43,55 @@ class BVH:
         - ``"midpoint"``, ``"median"``, ``"mean"``: halves along the longest axis of the centres (Kay and
           Kajiya 1986, "Ray tracing complex scenes").
     bins : int, optional
-        Bins for each axis, 2 to 64; as many as suit the scene's ``quality`` if not given. For ``"binned"``
-        and ``"spatial"``.
+        Bins for each axis, 2 to 64; chosen by the scene's ``quality`` if not given. For ``"binned"`` and
+        ``"spatial"``.
     traversal_cost, intersection_cost : float
-        Cost of visiting a node and of testing a leaf's block of primitives, in any one unit; only their ratio
-        matters. They decide between leaf and split.
+        Cost of visiting a node and of testing a leaf's block of primitives; only their ratio matters. They
+        decide between leaf and split.
     budget : float, optional
         Number of references that cuts and spatial splits may add, over the number of primitives, 0 to 8; 4 if
         not given. They add none if they gain little. For ``"spatial"``.
     radius : int, optional
         Search radius of clusters in the order of Morton codes, 1 to 128; 14 if not given. For ``"ploc"``.
     optimize : {"reinsertion", "treelet"} or a tuple of these, optional
-        Optimizations of the tree, in turn. ``"reinsertion"`` moves subtrees to where they cost less (Meister
+        Optimizations of the tree, in turn. ``"reinsertion"`` moves subtrees to places of less cost (Meister
         and Bittner 2018, "Parallel reinsertion for bounding volume hierarchy optimization"). ``"treelet"``
-        puts treelets of seven leaves together anew (Karras and Aila 2013, "Fast parallel construction of
+        restructures treelets of seven leaves (Karras and Aila 2013, "Fast parallel construction of
         high-quality bounding volume hierarchies"). If not given, the scene's ``quality`` chooses for
-        ``"binned"``, and there are none for the others; ``()`` is none. For long and diagonal geometry, the
-        quality may also choose spatial splits, or cutting into pieces first.
+        ``"binned"``, and the other builders have none; ``()`` disables all. For long and diagonal geometry,
+        the quality may also choose spatial splits, or cutting into pieces first.
     traversal : {"wide", "wide4", "wide8", "stack", "threaded", "packets4", "packets64", "flat", "stackless"}
         Traversal of the tree. Hits are the same.
 
         - ``"wide"``: the tree is collapsed to one of 8 children a node, or 4 where the processor has no AVX2
-          (Wald, Benthin and Boulos 2008, "Getting rid of packets"), which packets or waves of rays walk as
-          suits the batch. The fastest.
+          (Wald, Benthin and Boulos 2008, "Getting rid of packets"), which packets or waves of rays traverse,
+          depending on the batch. The fastest.
         - ``"wide4"``, ``"wide8"``: the same with that width. 8 needs AVX2.
         - ``"stack"``: the binary tree, one ray after the other, the nearer child first and the other on a
           stack with its distance (Kay and Kajiya 1986). Any-hit queries sort nothing, and take the
           larger child first.
         - ``"threaded"``: without a stack: each node has a link for a hit and one for a miss (Smits 1998,
-          "Efficiency issues for ray tracing"), once for each of some directions (Hachisuka 2015,
-          "Implementing a photorealistic rendering system using GLSL").
+          "Efficiency issues for ray tracing"), for each of several directions (Hachisuka 2015, "Implementing
+          a photorealistic rendering system using GLSL").
         - ``"packets4"``: with a stack, four rays together (Wald et al. 2001, "Interactive rendering with
           coherent ray tracing").
         - ``"packets64"``: with a stack, 64 rays together, with the first and the last active one known, and
           an interval test of all of them (Wald, Boulos and Shirley 2007, "Ray tracing deformable
           scenes using dynamic bounding volume hierarchies"; Overbeck, Ramamoorthi and Mark 2008, "Large ray
-          packets for real-time Whitted ray tracing"). For rays that go much the same way.
+          packets for real-time Whitted ray tracing"). For coherent rays.
         - ``"flat"``: the tree as arrays without pointers, as `Scene.gpu_arrays` has it, with a stack.
-        - ``"stackless"``: the same without one: each node says where to go on if its box is missed (Smits
-          1998), in one order for all rays.
+        - ``"stackless"``: the same without a stack: each node has the index of the next node if its box is
+          missed (Smits 1998), in one order for all rays.
 
-        All but the wide ones hold shapes that are not triangles in the same tree as these.
+        The wide traversals keep triangles and other shapes in separate trees, all others in one.
     orders : {6, 8}, optional
         Number of orders of ``"threaded"``: one for each half of each axis, or one for each octant; 8 if not
         given. Each takes 8 bytes a node.
     bounds : {"box", "oriented", "slabs"}
         Bounds of nodes besides their boxes, for ``"stack"``: none; oriented boxes, if these have less surface
         (Gottschalk, Lin and Manocha 1996, "OBBTree"); or slabs along ten diagonals (Kay and Kajiya 1986).
-        That saves tests of diagonal geometry, costs up to 80 bytes a node and a longer test of each, and
-        takes longer to build.
+        They save tests of diagonal geometry, but cost up to 80 bytes and a longer test for each node, and a
+        longer build.
 
     Raises
     ------

@@ -18,8 +18,8 @@ _GREATEST_DENSITY = 1000.0
 class Grid:
     """A uniform grid, walked from cell to cell (Amanatides and Woo 1987, "A fast voxel traversal algorithm").
 
-    Fast where primitives are of about one size and evenly spread, soon built, and small. A single resolution
-    does not suit scenes with little fine detail: see `NestedGrid`.
+    Fast to build, small, and fast to trace where primitives have about one size and are evenly spread. A
+    single resolution does not suit a scene with fine detail in a small part: see `NestedGrid`.
 
     Parameters
     ----------
@@ -30,10 +30,10 @@ class Grid:
         would exhaust the memory.
     density : float
         Cells for each primitive, more than 0 and at most 1000, by the cube-root rule (Cleary and Wyvill 1988,
-        "Analysis of an algorithm for fast ray tracing using uniform space subdivision"), in two dimensions
-        where the scene is flat.
+        "Analysis of an algorithm for fast ray tracing using uniform space subdivision"), or by a square root
+        if the scene is flat.
     mailbox : {"stamps", "cache", "none"}
-        Mailbox against testing a primitive again in another cell: a stamp for each primitive (Amanatides and
+        Method to avoid testing a primitive again in another cell: a stamp for each primitive (Amanatides and
         Woo 1987), a small hashed cache (Benthin 2006, "Realtime ray tracing on current CPU architectures"),
         or none. Hits are the same.
 
@@ -72,19 +72,19 @@ class Grid:
 class NestedGrid:
     """Grids in the dense cells of a grid (Jevans and Wyvill 1989, "Adaptive voxel subdivision").
 
-    For scenes that are much finer in some places than in others. A cell gets a grid of its own, around its
+    For scenes with much finer detail in some places than in others. A cell gets its own grid, around its
     primitives, if that lowers the cost by the surface area heuristic.
 
     Parameters
     ----------
     resolution : int or 3 ints, optional
-        Cells of the outermost grid, as for `Grid`; as `density` says if not given.
+        Cells of the outermost grid, as for `Grid`; by `density` if not given.
     density : float
         Cells for each primitive in every grid, more than 0 and at most 1000, by the cube-root rule.
     leaf : int
         Maximum number of primitives of a cell without a grid; at least 1.
     depth : int
-        The most grids in each other, 1 to 16.
+        Maximum number of nested levels, 1 to 16.
     mailbox : {"stamps", "cache", "none"}
         Mailbox against testing a primitive again in another cell, as for `Grid`.
 

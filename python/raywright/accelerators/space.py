@@ -16,7 +16,7 @@ _MOST_LEVELS = 60
 class KdTree:
     """A kD-tree: space parted by planes across its axes, in nodes of 8 bytes.
 
-    A primitive is in every leaf that it overlaps, and is tested once for a ray all the same.
+    A primitive is in every leaf that it overlaps; a ray still tests it only once.
 
     Parameters
     ----------
@@ -33,11 +33,10 @@ class KdTree:
     traversal : {"stack", "restart"}
         Traversal: with a stack (Hapala and Havran 2011, "Review: Kd-tree traversal algorithms for ray
         tracing"), or without, from the top again after each leaf (Foley and Sugerman 2005; Horn et al. 2007;
-        Laine 2010, "Restart trail for stackless BVH traversal"). Both come to the same leaves in the same
+        Laine 2010, "Restart trail for stackless BVH traversal"). Both visit the same leaves in the same
         order.
     traversal_cost, intersection_cost : float
-        Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters. For
-        ``"sah"``.
+        Cost of visiting a node and of testing a primitive; only their ratio matters. For ``"sah"``.
     empty_bonus : float
         Reduction of the cost of a plane with nothing on one side, 0 to 1. For ``"sah"``.
     max_depth : int, optional
@@ -89,15 +88,16 @@ class KdTree:
 class Octree:
     """An octree: cells halved across all axes at once, in nodes of 4 bytes.
 
-    Rays are followed by where they meet the planes around cells; those between a cell's children lie
-    half-way (Revelles, Urena and Lastra 2000, "An efficient parametric algorithm for octree traversal").
+    Traversal follows the parameters at which a ray meets the planes of cells; those of children are halfway
+    between (Revelles, Urena and Lastra 2000, "An efficient parametric algorithm for octree traversal").
 
     Parameters
     ----------
     max_depth : int
         Maximum depth below the root, 0 to 18.
     leaf_size : int
-        Maximum number of primitives of a leaf that is not split. Nor is one where that would save no tests.
+        Maximum number of primitives of a leaf that is not split. A node is not split if that would save no
+        tests.
 
     Raises
     ------
@@ -134,15 +134,15 @@ class BSP:
 
     After Fuchs, Kedem and Naylor (1980, "On visible surface generation by a priori tree structures") and,
     for rays, Ize, Wald and Parker (2008, "Ray tracing with the BSP tree"): each cell tries planes of a few
-    of its polygons, the one that each lies in, three through its edges and six across axes, and takes the
-    one of least cost by the surface area heuristic. Polygons that straddle it are cut.
+    of its polygons, its own plane, three through its edges and six across axes, and takes the plane of least
+    cost by the surface area heuristic. Polygons that straddle it are cut.
 
     Parameters
     ----------
     candidates : int
         Number of polygons of a cell that give planes, 1 to 1024.
     traversal_cost, intersection_cost : float
-        Cost of visiting a node and of testing a primitive, in any one unit; only their ratio matters.
+        Cost of visiting a node and of testing a primitive; only their ratio matters.
     max_depth : int, optional
         Maximum depth below the root, 0 to 60; 8 + 1.3 log2(n) for n primitives if not given.
     leaf_size : int

@@ -32,17 +32,17 @@ class AnyCamera(Pose):
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     end_pose : Pose, optional
-        Pose as the shutter closes; another camera will do. In between it moves straight and turns about one
-        axis, both at an even pace (slerp; Shoemake 1985).
+        Pose as the shutter closes; a camera is accepted too. In between, the position moves on a straight
+        line and the orientation rotates about one axis, both uniformly (slerp; Shoemake 1985).
     shutter : 2 floats
-        Opening and closing time, in the scene's time, in which instances move from 0 to 1.
+        Opening and closing time of the shutter; instances move from time 0 to 1.
 
     Raises
     ------
     ValueError
         If a number is out of range or not finite, or the shutter closes before it opens.
     TypeError
-        If something is not a number, or `end_pose` is no Pose.
+        If an argument is not a number, or `end_pose` is no Pose.
 
     See Also
     --------
@@ -94,13 +94,13 @@ class AnyCamera(Pose):
         Parameters
         ----------
         offsets : (2,) or (height, width, 2) array
-            Place in the pixel, for all or for each: (0, 0) is its upper left, (1, 1) its lower right. The
-            default is the centre; ``rng.random((height, width, 2))`` is anywhere in it.
+            Position within the pixel, for all pixels or for each: (0, 0) is its upper left, (1, 1) its lower
+            right. The default is the center; ``rng.random((height, width, 2))`` is random.
         dtype : float64 or float32
             Type of the arrays; rays of float32 are the fastest to read.
         lens : (2,) or (height, width, 2) array, optional
-            Place in the lens, two numbers from 0 to 1, for all or for each: uniform numbers are uniform over
-            its area. Its centre if not given; of no account for cameras without a lens.
+            Position on the lens, two numbers from 0 to 1, for all pixels or for each: uniform numbers give
+            points uniform over its area. Its centre if not given; ignored by cameras without a lens.
         time : float or (height, width) array, optional
             Time from 0, the default, as the shutter opens to 1 as it closes, for all or for each. For queries
             of a scene in motion, pass ``time=camera.scene_time(time)``.
@@ -109,7 +109,7 @@ class AnyCamera(Pose):
         -------
         origins, directions : (height, width, 3) arrays
             Directions are unit, to rounding. Row 0 is the top of the picture, column 0 its left. Directions
-            that the camera does not see, as beyond the circle of a fisheye, are NaN, and hit nothing.
+            outside of the view, such as beyond the circle of a fisheye, are NaN, and hit nothing.
 
         Raises
         ------
@@ -150,15 +150,15 @@ class AnyCamera(Pose):
     def rays_through(
         self, points: ArrayLike, lens: ArrayLike | None = None, time: ArrayLike | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return a ray through each of any points of the picture.
+        """Return a ray through each of the given points of the picture.
 
         Parameters
         ----------
         points : (..., 2) array
             Points in pixels from the picture's left and from its top: the centre of the pixel in row i and
-            column j is at (j + 0.5, i + 0.5). Points beside the picture have rays too.
+            column j is at (j + 0.5, i + 0.5). Points outside of the picture have rays too.
         lens : (..., 2) array, optional
-            Place in the lens, as in `rays`; leading shapes broadcast.
+            Position on the lens, as in `rays`; leading shapes broadcast.
         time : float or (...) array, optional
             Time, as in `rays`; shapes broadcast.
 
@@ -206,7 +206,7 @@ class AnyCamera(Pose):
         return origins, directions
 
     def scene_time(self, time: ArrayLike | None = None) -> NDArray[np.float64]:
-        """Return the scene's time at times (...) from 0 as the shutter opens to 1 as it closes.
+        """Return the scene's time for times from 0, as the shutter opens, to 1, as it closes.
 
         Parameters
         ----------

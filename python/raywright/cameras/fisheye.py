@@ -21,12 +21,12 @@ _WIDEST = {
 
 @dataclass(frozen=True, init=False, repr=False, kw_only=True)
 class Fisheye(AnyCamera):
-    """A camera that sees a wide angle in a circle (Miyamoto 1964), and nothing beyond.
+    """A fisheye camera: a wide angle of view in a circle (Miyamoto 1964), and nothing outside of it.
 
     Parameters
     ----------
     position, target, up, direction
-        Where the camera is, and where it looks, as in `Camera`.
+        Position and orientation, as in `Camera`.
     fov : float
         Angle of view in degrees, from one edge of the circle to the other: up to 360, below 360 if the
         mapping is stereographic, up to 180 if it is orthographic.
@@ -37,8 +37,8 @@ class Fisheye(AnyCamera):
         as θ; ``"equisolid"``, as sin(θ/2), so that equal solid angles have equal areas; ``"stereographic"``,
         as tan(θ/2), so that small circles stay circles; ``"orthographic"``, as sin θ.
     fov_axis : str
-        Side of the picture that is the diameter of the circle: the ``"smaller"``, so that all of it is seen,
-        ``"x"``, ``"y"``, the ``"larger"``, or the ``"diagonal"``, so that it fills the picture.
+        Side of the picture that equals the diameter of the circle: the ``"smaller"`` (all of the circle is
+        visible), ``"x"``, ``"y"``, the ``"larger"``, or the ``"diagonal"`` (the circle fills the picture).
     end_pose, shutter
         As in `Camera`.
 
@@ -47,7 +47,7 @@ class Fisheye(AnyCamera):
     ValueError
         If a number is out of range or not finite, or the mapping is none of these.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------

@@ -13,14 +13,14 @@ from .pose import Pose
 
 @dataclass(frozen=True, init=False, repr=False, kw_only=True)
 class Orthographic(AnyCamera):
-    """A camera whose rays are parallel: lengths are the same at every distance.
+    """A camera with parallel rays: lengths are the same at every distance.
 
     Rays start in the plane through `position` across the view, so shapes behind it are not seen.
 
     Parameters
     ----------
     position, target, up, direction
-        Where the middle of the picture is, and where the camera looks, as in `Camera`.
+        Position of the middle of the picture, and orientation, as in `Camera`.
     scale : float
         Length of the scene across the picture, in the scene's unit.
     width, height : int
@@ -36,7 +36,7 @@ class Orthographic(AnyCamera):
     ValueError
         If a number is out of range or not finite.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------

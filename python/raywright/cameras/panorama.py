@@ -21,8 +21,7 @@ class Panorama(AnyCamera):
     Parameters
     ----------
     position, target, up, direction
-        Where the camera is, and where it looks, as in `Camera`. With neither target nor direction it looks
-        along -z.
+        Position and orientation, as in `Camera`. With neither target nor direction it looks along -z.
     width, height : int
         Size of the picture in pixels, 1 to 65536.
     end_pose, shutter
@@ -33,7 +32,7 @@ class Panorama(AnyCamera):
     ValueError
         If a number is out of range or not finite.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------

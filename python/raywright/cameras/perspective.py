@@ -26,7 +26,7 @@ class Camera(AnyCamera):
     position : 3 floats
         Position of the camera, in the scene's unit of length.
     target : 3 floats, optional
-        The point that comes to the middle of the picture. Either this or `direction` is given.
+        The point in the middle of the picture. Either this or `direction` is given.
     up : 3 floats
         The direction that points up in the picture; need not be unit nor perpendicular to the view.
     fov : float, optional
@@ -42,14 +42,13 @@ class Camera(AnyCamera):
         Instead of `fov`, focal lengths in pixels, across and down; negative ones mirror the picture.
     principal_point : 2 floats, optional
         The point of the picture that the view goes through, in pixels from its left and its top as in
-        `rays_through`; the middle if not given. Elsewhere it is a shifted lens, or a part of a picture.
+        `rays_through`; the middle if not given. Any other point is a shifted lens, or a crop of a picture.
     skew : float
-        Skew coefficient K[0, 1] of a camera matrix, in pixels: the shift to the right of a point as far below
-        the view as it is away. With `focal_length_px` only.
+        Skew coefficient K[0, 1] of a camera matrix, in pixels. With `focal_length_px` only.
     end_pose : Pose, optional
-        Pose as the shutter closes; another camera will do.
+        Pose as the shutter closes; a camera is accepted too.
     shutter : 2 floats
-        Opening and closing time, in the scene's time, in which instances move from 0 to 1.
+        Opening and closing time of the shutter; instances move from time 0 to 1.
 
     Raises
     ------
@@ -57,7 +56,7 @@ class Camera(AnyCamera):
         If a number is out of range or not finite, if `position` equals `target`, or if `up` is zero or
         parallel to the view.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------
@@ -127,7 +126,7 @@ class Camera(AnyCamera):
         end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> Camera:
-        """Return the camera of computer vision: a point X is seen at the pixel ``K @ (R @ X + t)``.
+        """Return a camera from K, R and t: a point X projects to the pixel ``K @ (R @ X + t)``.
 
         Parameters
         ----------
@@ -142,7 +141,7 @@ class Camera(AnyCamera):
             the pixel in row i and column j is at (j, i); 0.5 to count from the picture's corner, as in
             COLMAP.
         end_pose, shutter
-            As for any camera; ``Pose.from_extrinsics(R, t)`` is where it goes.
+            As for any camera; ``Pose.from_extrinsics(R, t)`` makes an end pose.
 
         Returns
         -------
@@ -175,9 +174,9 @@ class Camera(AnyCamera):
 
     @classmethod
     def from_matrix(cls, to_world: ArrayLike, convention: str = "gltf", **others: Any) -> Camera:
-        """Return the camera at a matrix, as in `Pose.from_matrix`.
+        """Return the camera with a given matrix, as in `Pose.from_matrix`.
 
-        Matrices that mirror are allowed, and mirror the picture.
+        A mirroring matrix is allowed; it mirrors the picture.
 
         Parameters
         ----------
@@ -239,10 +238,10 @@ class Camera(AnyCamera):
         Returns
         -------
         (..., 2) float64 array
-            In pixels from the picture's left and from its top, as `rays_through` takes them: the pixel in row
-            i and column j is from (j, i) to (j + 1, i + 1). Points beside the picture are beyond its ends;
-            NaN for those behind the camera, and in the plane through it. A camera that moves is where it is
-            as the shutter opens.
+            Pixel coordinates from the left and from the top of the picture, as in `rays_through`: the pixel
+            in row i and column j is from (j, i) to (j + 1, i + 1). Points outside of the picture have
+            coordinates beyond its edges; points behind the camera, or in the plane through it, have NaN. A
+            moving camera is taken as the shutter opens.
 
         Raises
         ------

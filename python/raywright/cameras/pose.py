@@ -38,7 +38,7 @@ class Pose:
         If a number is not finite, there are both or neither of `target` and `direction`, `position` equals
         `target`, or `up` is zero or parallel to the view.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------
@@ -88,13 +88,13 @@ class Pose:
 
     @classmethod
     def from_matrix(cls: type[P], to_world: ArrayLike, convention: str = "gltf", **others: Any) -> P:
-        """Return the pose, or the camera, at a matrix.
+        """Return the pose, or the camera, with a given matrix.
 
         Parameters
         ----------
         to_world : (4, 4) array
-            Matrix from the camera's own space to the scene's, acting on column vectors (x, y, z, 1). Lengths
-            of its axes do not count.
+            Matrix from the camera's own space to the scene's, acting on column vectors (x, y, z, 1). The
+            lengths of its axes are ignored.
         convention : str
             Axes of the camera's own space: ``"gltf"``, it looks along -z with x to the right and y up (as in
             Blender and OpenGL); ``"mitsuba"``, along +z with x to the left and y up; ``"opencv"``, along +z
@@ -132,7 +132,7 @@ class Pose:
 
     @classmethod
     def from_extrinsics(cls: type[P], R: ArrayLike, t: ArrayLike, **others: Any) -> P:
-        """Return the pose, or the camera, of computer vision: a point X is at ``R @ X + t`` in its space.
+        """Return the pose, or the camera, with extrinsics R and t: it sees a point X at ``R @ X + t``.
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class Pose:
 
     @property
     def extrinsics(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """R (3, 3) and t (3,), which have a point X of the scene at ``R @ X + t``: right, down, forward."""
+        """R (3, 3) and t (3,): a point X has the coordinates ``R @ X + t`` to the right, down and forward."""
         forward = self.forward
         right = _unit(np.cross(forward, _unit(np.array(self.up))))
         rotation = np.stack([right, np.cross(forward, right), forward])

@@ -21,13 +21,13 @@ class ThinLens(AnyCamera):
     """A camera with a thin lens (Potmesil and Chakravarty 1981): sharp in one plane across its view.
 
     `aperture_radius` sets the blur, or `f_stop` as in photography. `focus_distance` or `focus_point` sets the
-    plane in focus; otherwise it is the target's. The angle of view is that of the lens in focus at infinity,
-    whatever it is in focus at.
+    plane in focus; otherwise the target is in focus. The angle of view is that of the lens focused at
+    infinity, and does not depend on the focus.
 
     Parameters
     ----------
     position, target, up, direction
-        Where the middle of the lens is, and where the camera looks, as in `Camera`.
+        Position of the middle of the lens, and orientation, as in `Camera`.
     fov : float, optional
         Angle of view in degrees, between 0 and 180; 40 if neither this nor `focal_length` is given.
     width, height : int
@@ -58,7 +58,7 @@ class ThinLens(AnyCamera):
         Center of the view, in pixels from the left and the top of the picture; its middle if not given.
         Elsewhere the lens is shifted.
     end_pose, shutter
-        As in `Camera`. The distance in focus stays that at the shutter's opening.
+        As in `Camera`. The focus distance stays as it is when the shutter opens.
 
     Raises
     ------
@@ -66,7 +66,7 @@ class ThinLens(AnyCamera):
         If a number is out of range or not finite, something is given twice or not at all, or the plane in
         focus is not in front of the camera.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------

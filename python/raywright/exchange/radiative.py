@@ -38,23 +38,23 @@ _SMALL = 2048
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RadiativeExchange(Tabular):
-    """The heat that surfaces exchange by radiation. Made by `radiative_exchange`; `patches` is read-only.
+    """Heat exchange of surfaces by radiation. Made by `radiative_exchange`; `patches` is read-only.
 
-    There is a row a face of the scene, or a row a side: all fronts, and after them all backs.
+    There is a row for each face of the scene, or for each side: all fronts, then all backs.
 
     Attributes
     ----------
     flux : (N,) float64
-        The net flux that a surface loses, W/m²: radiosity less irradiance. Below 0 it gains.
+        Net flux that a surface loses, W/m²: radiosity minus irradiance. A negative value is a gain.
     power : (N,) float64
-        The same of all its area, W.
+        Net power that a surface loses, W: flux times area.
     standard_error : (N,) float64
         Standard error of `flux`; 0 without sampling. In a closed room at one temperature it is almost 0.
     radiosity, irradiance : (N,) float64
-        Emitted and reflected flux, and arriving flux, of heat, W/m²; light of the scene is in
+        Leaving (emitted and reflected) and arriving flux of heat, W/m²; light of the scene is in
         `absorbed_light`.
     absorbed_light : (N,) float64
-        Absorbed flux of the scene's lights, environment and emission, W/m²; `flux` is less by it.
+        Absorbed flux of the scene's lights, environment and emission, W/m²; `flux` is reduced by it.
     areas : (N,) float64
         Areas in m²; 0 for a face that coincides with one before it, which counts for both.
     patches : (N,) structured
@@ -62,10 +62,9 @@ class RadiativeExchange(Tabular):
     temperature, emissivity : (N,) float64
         As given.
     escaped : float
-        The power that leaves the scene by heat, W, or comes to black backs.
+        Power of heat that leaves the scene or reaches black backs, W.
     dropped : int
-        Number of faces that exchange nothing of their own: without area, not finite, or coincident with
-        another.
+        Number of faces without exchange of their own: without area, not finite, or coincident with another.
 
     See Also
     --------
@@ -93,7 +92,7 @@ class RadiativeExchange(Tabular):
     dropped: int
 
     def of(self, shape: int) -> float:
-        """Return the power that all faces of a shape lose together, W.
+        """Return the net power that a shape loses, W.
 
         Parameters
         ----------
@@ -168,36 +167,36 @@ def radiative_exchange(
     threads: int | None = None,
     progress: BuildProgress = True,
 ) -> RadiativeExchange:
-    """Return the net radiative flux of each face, of grey and diffuse surfaces.
+    """Return the net radiative flux of each face, for gray and diffuse surfaces.
 
     Each surface emits ε times the Stefan-Boltzmann constant times T⁴, absorbs the share ε of the arriving
     flux and reflects the rest: the net radiation method (Siegel and Howell, "Thermal Radiation Heat
-    Transfer"). Materials do not count.
+    Transfer"). Materials are ignored.
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
-        The surfaces; a shape that is no mesh is one of them. The faces of an `Instance` are those of all its
-        copies, one after the other.
+    scene : Scene, Mesh or anything else that Scene takes
+        The surfaces; a curved shape is one surface. The faces of an `Instance` are those of all its copies,
+        one after the other.
     temperature : float, list, dict or array
-        Temperatures in kelvin, at least 0: one for all; a list with one a shape, or a dict by shape index, of
-        numbers or arrays with one a face; or an array with one a face, shape after shape.
+        Temperatures in kelvin, at least 0: a number for all; an array with a value for each face, shape after
+        shape; or a list, or a dict by shape index, of numbers or of arrays with a value for each face.
     emissivity : the same
         Above 0, and at most 1.
     sky_temperature : float, optional
         Temperature of black surroundings, in kelvin, beyond the scene; 0 K by default.
     absorptance : the same as emissivity, optional
-        The share that is absorbed of the light that the scene itself has: of its lights, its environment, as
-        the sun and the sky, and its emission. By default the emissivity. The mean of red, green and blue is
-        taken for all of the light, in W: ``DirectionalLight(down, 800.0)`` is a sun of 800 W/m².
+        Absorbed share of the scene's light: from its lights, its environment and its emission. By default the
+        emissivity. Light is the mean of red, green and blue, in W: ``DirectionalLight(down, 800.0)`` is a sun
+        of 800 W/m².
     method : {"matrix", "stochastic"}, optional
         By `view_factors`, or by rays as in `radiosity`. By default "matrix" for up to 2048 faces.
     error, rays : optional
         As of `radiosity`.
     sides : {"front", "both"}
-        "front": backs are black and cold. "both": backs take part, as those of fins do. The latter is for
-        "stochastic", where two coincident faces that look opposite ways are the two sides of one, each with
-        the numbers of the face whose front it is.
+        "front": backs are black and cold. "both": backs take part, as for fins; it requires "stochastic". Two
+        coincident faces with opposite normals are then the two sides of one face, each with the values of its
+        own.
     seed, threads, progress
         As of `radiosity`.
 
@@ -211,12 +210,12 @@ def radiative_exchange(
         If a number is out of its range, there are too few or too many of them, a surface has no end, or the
         scene has a medium.
     TypeError
-        If something is of the wrong kind.
+        If an argument has the wrong type.
 
     Warns
     -----
     RuntimeWarning
-        If faces coincide: they are one, which exchanges heat once, by the numbers of the first of them.
+        If faces coincide: they count as one face, with the values of the first of them.
 
     See Also
     --------

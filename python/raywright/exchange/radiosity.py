@@ -67,49 +67,45 @@ def radiosity(
 ) -> RadiositySolution | Iterator[RadiositySolution]:
     """Solve for the diffuse interreflection of light between the surfaces of a scene (radiosity).
 
-    Faces, or the patches that they are cut into, have one value each. `Radiosity` makes pictures of the
-    solution.
+    Each face, or each patch of a face, has one value. `Radiosity` makes pictures of the solution.
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
-        Scene of `Diffuse` surfaces, or `TwoSided` of them. Surfaces that shine and all other lights and
-        environments count. A shape that is no mesh is one patch; shading normals do not count. Each copy of
-        an `Instance` has patches of its own, and so takes the memory that its shapes would take; copies that
-        move have no solution.
+    scene : Scene, Mesh or anything else that Scene takes
+        Scene of `Diffuse` surfaces, or `TwoSided` of them. Emissive surfaces, lights and environments all
+        contribute. A curved shape is one patch; shading normals are ignored. Each copy of an `Instance` has
+        its own patches, and takes their memory; moving copies are refused.
     per : {"face", "vertex"}
-        "face": pictures have one value a patch. "vertex": they are linear between corners, where patches of
-        the same shape meet without an edge.
+        "face": pictures show one value for each patch. "vertex": they interpolate linearly between corners,
+        smoothly across patches of a shape.
     method : {"stochastic", "progressive", "matrix"}
         "stochastic" shoots all unshot light at once, along rays in proportion to its power, without a matrix
-        (Neumann 1995; Bekaert 1999). "progressive" shoots from one patch after the other, always that which
-        has most (Cohen, Chen, Wallace and Greenberg 1988). "matrix" solves with `view_factors`, for some
-        thousand patches at most.
+        (Neumann 1995; Bekaert 1999). "progressive" shoots from one patch after the other, always the one with
+        the most unshot power (Cohen, Chen, Wallace and Greenberg 1988). "matrix" solves with `view_factors`,
+        for some thousand patches at most.
     error : float, optional
         Target, as a share: of "stochastic", `RadiositySolution.error`, with the bound on unshot power below a
-        tenth of it; of "progressive", that bound; of "matrix", the error of view factors found by rays. By
-        default 0.01; for "stochastic" with `rays`, as these give; for "matrix", the default of
-        `view_factors`.
+        tenth of it; of "progressive", that bound; of "matrix", the error of sampled view factors. By default
+        0.01; for "stochastic" with `rays`, none; for "matrix", the default of `view_factors`.
     rays : int, optional
-        Number of rays of the first light, all replicates together; reflected light takes rays in proportion.
-        The default is as many as `error` needs, for "progressive" 64 a patch and at least 65536 for each
-        replicate. For "matrix", it is the number for lights that are no surfaces.
+        Number of rays for emitted light, over all replicates; reflected light takes rays in proportion. The
+        default follows from `error`; for "progressive" it is 64 for each patch, and at least 65536 for each
+        replicate. For "matrix", it is the number for lights without a surface.
     patch_size : float, optional
-        The longest side of a patch; each triangle is cut into n² that are similar to it. By default faces are
-        not cut.
+        The longest side of a patch; each triangle is cut into n² similar ones. By default faces are not cut.
     sides : {"front", "both"}, optional
-        Which sides of faces take part: those that normals point to, with black backs, or both, as `Path` has
-        them. By default both, and for "matrix", which knows fronts only, these. With both, two faces that lie
-        in each other and look opposite ways are the two sides of one, each as the front of its face is.
+        Sides of faces that take part: fronts, with black backs, or both, as in `Path`. By default both;
+        "matrix" supports fronts only. With both, two coincident faces with opposite normals are the two sides
+        of one face, each with the material of its own.
     seed : int, Generator or SeedSequence
-        Which random numbers; the same seed gives the same bits.
+        Seed of the random numbers; the same seed gives the same bits.
     threads : int, optional
         Number of threads; one a core by default.
     progress : bool or callable
         As for `Scene.build`: the share of the work.
     states : bool
-        Whether to return a generator of intermediate solutions, for "progressive": one a shot, the final one
-        last.
+        True to return a generator of intermediate solutions, for "progressive": one after each shot, the
+        final one last.
 
     Returns
     -------
@@ -122,12 +118,12 @@ def radiosity(
         If something is out of its range, a surface is not diffuse, reflects all of a channel or has no end,
         the scene has a medium, or nothing shines.
     TypeError
-        If something is of the wrong kind.
+        If an argument has the wrong type.
 
     Warns
     -----
     RuntimeWarning
-        If faces coincide: they are one, which exchanges light once.
+        If faces coincide: they count as one face.
 
     See Also
     --------
@@ -136,17 +132,16 @@ def radiosity(
 
     Notes
     -----
-    If flat faces touch front to front, as a box and the floor beneath do, the covered part of each exchanges
-    light with the other alone. Faces without area exchange nothing. Eight replicates, each of rays of its
-    own, give the standard error; the most that unshot power may add is a part of it. Within each, emitted
-    power is absorbed, has left or is unshot, to rounding. Iterations end by ‖unshot‖ / (1
-    - the greatest reflectance).
+    If flat faces touch front to front, such as a box and the floor beneath, the covered part of each
+    exchanges light with the other alone. Faces without area exchange nothing. Eight independent replicates
+    give the standard error, which includes a bound on unshot power. In each, emitted power equals absorbed,
+    escaped and unshot power, to rounding. Iterations stop by the bound ‖unshot‖ / (1 - the greatest
+    reflectance).
 
-    The error of "stochastic" is the root mean square over the area, of patches each by itself: the irradiance
-    of a patch is known by the rays that land there, so that N patches take about N / `error`² rays for the
-    light that is shot first, and as much more as is reflected. Half as long sides take four times the rays: a
-    large `patch_size` with ``per="vertex"`` costs less than small ones. Means over many patches are known
-    better.
+    The error of "stochastic" is the root mean square over area of the errors of single patches. The rays that
+    land on a patch determine its irradiance, so N patches take about N / `error`² rays for emitted light, and
+    more in proportion to reflected light. Halving `patch_size` takes four times the rays: a large one with
+    ``per="vertex"`` costs less. Means over many patches have smaller errors.
 
     Examples
     --------

@@ -32,12 +32,12 @@ class RadiosityStep(NamedTuple):
     Attributes
     ----------
     seconds : float
-        Since it began.
+        Seconds since the start.
     rays : int
         Rays so far.
     bound : float
-        The most that all radiosities together can be short by, for power that is not shot yet, as a share of
-        their sum: ‖unshot‖ / (1 - reflectance) over ‖radiosity‖.
+        Bound on the radiosity that unshot power can still add, as a share of the total: ‖unshot‖ / (1 -
+        reflectance) over ‖radiosity‖.
 
     See Also
     --------
@@ -58,52 +58,50 @@ class RadiosityStep(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RadiositySolution(Tabular):
-    """The light that diffuse patches send each other; all arrays are read-only. Made by `radiosity`.
+    """Diffuse light between patches; all arrays are read-only. Made by `radiosity`.
 
-    There is a row a side of a patch: all fronts, to which the normals point, and after them all backs, if
-    these take part.
+    There is a row for each side of a patch: all fronts, where the normals point, then all backs, if they take
+    part.
 
     Attributes
     ----------
     radiosity : (N, 3) float64
-        The flux that leaves, by emission and reflection, W/m²: π times the radiance.
+        Leaving flux, emitted and reflected, W/m²: π times the radiance.
     irradiance : (N, 3) float64
-        The flux that arrives, W/m².
+        Arriving flux, W/m².
     standard_error : (N, 3) float64
-        Standard error of `radiosity`: the spread of independent replicates, and the most that unshot power
-        may add to it; 0 without sampling. Variation within a patch, such as the edge of a shadow, is not part
-        of it.
+        Standard error of `radiosity`: from independent replicates, plus a bound on the effect of unshot
+        power; 0 without sampling. Variation within a patch, such as the edge of a shadow, is not part of it.
     irradiance_error : (N, 3) float64
         The standard error of `irradiance`.
     emission, reflectance : (N, 3) float64
         Emission, W/m², and reflectance of each: the means of four points.
     areas : (N,) float64
-        Areas in m²; 0 for a face that coincides with one before it, which counts for both and whose light it
-        has.
+        Areas in m²; 0 for a face that coincides with one before it, which counts for both and has the same
+        light.
     patches : (N,) structured
         Index of the "shape", its "face", the "cell" of the face, and the "side": 1 for the front, -1 for the
         back. In an `Instance`, "copy" is the index of the copy, and "face" is numbered as in
         `Instance.locate`; "copy" is -1 elsewhere.
     corners : (N, 3, 3) float64
-        Positions of the corners, in the order of the face's; NaN for shapes that are no triangles.
+        Positions of the corners, in the order of the face's; NaN for shapes without triangles.
     cuts : (F,) uint32
         Number of strips of each face, all copies counted.
     mirrored : (F,) bool
         True for faces of mirrored copies: their second and third corners change places.
     per : {"face", "vertex"}
-        "face": look-ups have one value a patch. "vertex": they are linear between the corners.
+        "face": pictures show one value for each patch. "vertex": they interpolate linearly between corners.
     method : {"stochastic", "progressive", "matrix"}
         The method of the solution.
     emitted, absorbed, escaped, unshot : tuple of 3 floats
         Balance of power, W: emitted by lights and surfaces, absorbed by patches, escaped from the scene or
-        absorbed by black backs, and unshot. The first is the sum of the others.
+        absorbed by black backs, and unshot. Emitted power is the sum of the others.
     history : tuple of RadiosityStep
         Progress of the solution over time.
     dropped : int
-        Number of faces that exchange nothing of their own: without area, not finite, or coincident with
-        another.
+        Number of faces without exchange of their own: without area, not finite, or coincident with another.
     surface_area : float
-        The area of all faces but those of copies, coincident ones counted each, m².
+        Area of all faces except copies, with each coincident face counted, m².
 
     See Also
     --------
@@ -149,12 +147,12 @@ class RadiositySolution(Tabular):
 
     @property
     def error(self) -> float:
-        """The root mean square, by area, of `irradiance_error` over that of `irradiance`."""
+        """Root mean square of `irradiance_error`, by area, over that of `irradiance`."""
         return relative_error(self.irradiance_error, self.irradiance, self.areas)
 
     @property
     def bound(self) -> float:
-        """The last of `history`'s bounds."""
+        """The last bound of `history`."""
         return self.history[-1].bound if self.history else 0.0
 
     @cached_property
@@ -190,14 +188,14 @@ class RadiositySolution(Tabular):
     ) -> trimesh.Trimesh:
         """Return a mesh of the patches with their light as vertex colors.
 
-        Each patch has corners of its own, so that patches that meet at an edge keep their colors. Shapes that
-        are no meshes are left out.
+        Each patch has separate corners, so patches that share an edge keep their colors. Only meshes are
+        included.
 
         Parameters
         ----------
         exposure : float, optional
-            Factor of radiance before it is clipped to 0..1 and coded as sRGB; by default the one that brings
-            99 % of the reflecting patches below 1.
+            Factor of radiance before it is clipped to 0..1 and coded as sRGB; by default, 99 % of the
+            reflecting patches are below 1.
         side : {"front", "back"}
             Side of the patches.
 

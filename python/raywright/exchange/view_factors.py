@@ -40,7 +40,7 @@ _MOST_RAYS = 2**26
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ViewFactors(Tabular):
-    """View factors: the share of the uniform diffuse light from each surface that arrives at each other.
+    """View factors: the share of the diffuse light leaving one surface that arrives at another.
 
     Attributes
     ----------
@@ -55,13 +55,11 @@ class ViewFactors(Tabular):
         mesh is one face. An `Instance` is one shape, whose faces are those of all copies, one copy after the
         other, as `Instance.locate` numbers those of each.
     closed, hidden, sampled : int
-        Number of face pairs that look at each other and are in closed form, certainly hidden, and sampled by
-        rays.
+        Number of pairs of faces that face each other: in closed form, fully hidden, and sampled by rays.
     rays : int
         Number of rays.
     dropped : int
-        Number of faces that exchange nothing of their own: without area, not finite, or coincident with
-        another.
+        Number of faces without exchange of their own: without area, not finite, or coincident with another.
 
     See Also
     --------
@@ -109,7 +107,7 @@ class ViewFactors(Tabular):
         return 1.0 - np.asarray(self.matrix.sum(axis=1))
 
     def plot(self, ax: Any = None, name: str = "matrix", cmap: Any = COLORS) -> Any:
-        """Draw the matrix with matplotlib, a pixel an entry, or a block of entries where there are many.
+        """Draw the matrix with matplotlib: a pixel for each entry, or for each block of a large matrix.
 
         Parameters
         ----------
@@ -152,7 +150,7 @@ class ViewFactors(Tabular):
         return plotted(ax, lambda ax: draw_matrix(ax, getattr(self, name), label, cmap))
 
     def matvec(self, x: ArrayLike) -> NDArray[np.float64]:
-        """Return ``matrix @ x``: of radiosities x, (N,) or (N, K), the irradiances.
+        """Return ``matrix @ x``: irradiances from radiosities x, (N,) or (N, K).
 
         Parameters
         ----------
@@ -185,7 +183,7 @@ class ViewFactors(Tabular):
         return np.asarray(self.matrix @ self._checked(x))
 
     def matvec_error(self, x: ArrayLike) -> NDArray[np.float64]:
-        """Return the standard error of ``matvec(x)``, as if all view factors erred each for itself.
+        """Return the standard error of ``matvec(x)``, as if the errors of view factors were independent.
 
         Errors within a row are negatively correlated, so the error is less if x is nearly constant and
         nothing escapes.
@@ -240,7 +238,7 @@ class ViewFactors(Tabular):
         return own, both
 
     def rmatvec(self, x: ArrayLike) -> NDArray[np.float64]:
-        """Return ``matrix.T @ x``: of powers x that leave each, (N,) or (N, K), the powers that arrive.
+        """Return ``matrix.T @ x``: arriving powers from leaving powers x, (N,) or (N, K).
 
         Parameters
         ----------
@@ -322,31 +320,31 @@ def view_factors(
     threads: int | None = None,
     progress: BuildProgress = True,
 ) -> ViewFactors:
-    """Compute view factors: the share of the light from each surface that arrives at each other.
+    """Compute view factors: the share of the diffuse light leaving one surface that arrives at another.
 
-    Every surface sends from its front alone, the side that the normal points to, and receives there alone,
-    whatever its material: a `TwoSided` one too. Occluders hide from either side. Two triangles that nothing
-    lies between have a closed form, to 1e-9 of itself; that nothing does is proven by their shaft. Otherwise
-    stratified rays estimate the difference from the closed form. Shapes that are no meshes send rays.
+    Every surface sends and receives on its front only, the side of its normal, for any material, `TwoSided`
+    included. Occluders block from either side. Two triangles with a clear view, which their shaft proves,
+    have a closed form with a relative error of 1e-9. For other pairs, stratified rays estimate the difference
+    from the closed form. Curved shapes send rays.
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
+    scene : Scene, Mesh or anything else that Scene takes
         Meshes, and shapes other than `Plane`. Each face of each copy of an `Instance` is a face of its own;
         copies must stand still.
     per : {"face", "shape"}
         Rows of the matrix: faces, or shapes with all of their faces.
     rays : int, optional
-        Number of rays between two faces with a possible occluder, up to 2**20. A shape that is no mesh sends
-        4096 times as many, up to 2**26. Each face of a scene of more than 10,000 faces sends 16 times as
-        many. If neither this nor `error` is given, 16, and then enough for a standard error below 1 % of the
-        greatest factor of either row, unless all together would be more than 33 million; a shape that is no
-        mesh sends up to 2**20, and a face of more than 10,000 sends 256, whatever error results.
+        Number of rays between two faces with a possible occluder, up to 2**20. A curved shape sends 4096
+        times as many, up to 2**26; in a scene of more than 10,000 faces, each face sends 16 times as many. If
+        neither this nor `error` is given: 16, then as many as needed for a standard error below 1 % of the
+        greatest factor of either row, up to 33 million in all. A curved shape then sends up to 2**20, and
+        each of more than 10,000 faces sends 256, for any error.
     error : float, optional
-        The standard error that no view factor between faces should exceed. More rays are sent until it is
-        met, up to 2**20 for a pair.
+        Target for the standard error of every view factor between faces. Rays are added until it is reached,
+        up to 2**20 for a pair.
     seed : int, Generator or SeedSequence
-        Picks the random numbers, 0 to 2**64 - 1.
+        Seed of the random numbers, 0 to 2**64 - 1.
     threads : int, optional
         Number of threads; all cores if not given. The answer does not depend on it.
     progress : bool or callable
@@ -362,15 +360,15 @@ def view_factors(
         If the scene has no faces, a face with a corner that is not finite, a shape without end, or copies
         that move; if `per` or a number is out of its range.
     TypeError
-        If something is of another kind.
+        If an argument has another type.
     KeyboardInterrupt
         At once, when Ctrl-C is pressed.
 
     Warns
     -----
     RuntimeWarning
-        If faces coincide: they are one, which exchanges light once. If they overlap in a part, or one is no
-        mesh, their exchange there counts twice.
+        If faces coincide: they count as one face. If they overlap only in part, or one is a curved shape, the
+        exchange of the common part counts twice.
 
     See Also
     --------
@@ -379,16 +377,16 @@ def view_factors(
 
     Notes
     -----
-    The exchange A_i F_ij of each pair is computed once, so that A_i F_ij = A_j F_ji to the last digit but
-    one. Faces without area see nothing. In a closed room each row adds up to 1 within 1e-9: estimates are
-    moved, as little as their errors allow, until they do (weighted least squares within 0 and the factor of
-    an unblocked pair). A room is closed if none of at least 65,536 rays from its sampled faces meets a back
-    or nothing. If some do, the share that each row loses is estimated too. Standard errors are those before
-    estimates are moved, and so are upper bounds.
+    The exchange A_i F_ij of each pair is computed once, so A_i F_ij = A_j F_ji except for the last digit.
+    Faces without area have factors of 0. In a closed room each row adds up to 1 within 1e-9: estimates are
+    adjusted to that sum by weighted least squares, between 0 and the factor of an unblocked pair. A room
+    counts as closed if all of at least 65,536 rays from its sampled faces hit a front. Otherwise the share
+    that each row loses is estimated too. Standard errors are those before the adjustment, and so are upper
+    bounds.
 
     If flat faces touch front to front, as a box or the cap of a cylinder and the floor beneath do, all light
-    from the covered part of one arrives at the other. Two triangles exchange the area in common; the share of
-    a shape that is no mesh is sampled, as its row is. An `Implicit` is taken to have no flat parts.
+    from the covered part of one arrives at the other. For two triangles it is their common area; for a curved
+    shape it is sampled, like its row. An `Implicit` is assumed to have no flat parts.
 
     More than 10,000 faces have a sparse matrix (``pip install 'raywright[sparse]'``), sampled by rays even if
     little is hidden: the rows of two faces are combined into one estimate of their exchange, and rows are

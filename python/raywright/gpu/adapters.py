@@ -19,7 +19,7 @@ def chosen(adapter: Any) -> Any:
     Raises
     ------
     ImportError
-        If wgpu is not installed, or lacks something that is called.
+        If wgpu is not installed, or lacks a required function.
     RuntimeError
         If there is no driver that is fit.
     ValueError

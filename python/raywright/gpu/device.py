@@ -36,19 +36,19 @@ class Gpu:
     """A graphics processor that traces rays, by WebGPU: ``with scene.on_device(rw.Gpu()) as there: ...``.
 
     It needs the extra ``raywright[gpu]``, and a driver for Vulkan, Metal or Direct3D 12. Its arithmetic is
-    tried once: answers are the CPU's, to the bit, on every device that computes as WGSL promises.
+    tested once. Results have the CPU's bits on every device that computes as WGSL promises.
 
     Parameters
     ----------
     adapter : str or wgpu.GPUAdapter, optional
-        Device: a part of its name, or wgpu's own object. The one that wgpu prefers if not given.
+        Device, by a part of its name or as wgpu's object. If not given, the one that wgpu prefers.
 
     Raises
     ------
     ImportError
-        If wgpu is not installed, or lacks something that is called.
+        If wgpu is not installed, or lacks a required function.
     RuntimeError
-        If there is no such driver, or the device does not compute as WGSL promises.
+        If there is no such driver, or the arithmetic of the device breaks WGSL's promises.
     ValueError
         If no device has such a name.
     TypeError

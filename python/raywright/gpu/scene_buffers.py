@@ -25,10 +25,10 @@ _OPEN = 0xFFFFFFFE
 
 
 class GpuScene:
-    """A scene on a graphics processor: `Scene.on_device` makes it. It answers as the scene does, to the bit.
+    """A scene on a graphics processor, with the scene's results to the bit: `Scene.on_device` makes it.
 
-    The CPU decides the rays that the device cannot; `stats` counts them. If the device is lost, there is one
-    warning, and the CPU answers from then on.
+    The CPU decides the rays that the device leaves undecided; `stats` counts them. If the device is lost, a
+    warning is issued once, and the CPU answers from then on.
 
     See Also
     --------
@@ -78,7 +78,7 @@ class GpuScene:
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> Hits:
-        """Find the closest hit of each ray: the same as `Scene.intersect`, to the bit.
+        """Find the closest hit of each ray, with the bits of `Scene.intersect`.
 
         Arguments, results and errors are those of the scene's query.
 

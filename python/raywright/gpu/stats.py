@@ -14,17 +14,16 @@ class GpuStats:
     closest : int
         Number of rays traced for their closest hit.
     closest_decided : int
-        Number of them whose hit the CPU decided among up to four candidates. (Of all that hit something it
-        computes `t` and `uv`.)
+        Number of them whose hit the CPU decided among up to four candidates. (It computes `t` and `uv` of all
+        hits.)
     closest_walked : int
-        Those of them that the CPU traced by itself: there were more candidates, or the ray was not one for
-        float32.
+        Number of them that the CPU traced: those with more candidates, or out of the range of float32.
     any : int
         Number of rays tested for any hit.
     any_decided : int
         Number of them for which the CPU decided the hit of one face.
     any_walked : int
-        Number of them that the CPU traced by itself.
+        Number of them that the CPU traced.
 
     See Also
     --------
@@ -46,10 +45,10 @@ class GpuStats:
 
     @property
     def closest_share(self) -> float:
-        """The share of rays asked for their closest hit that the device did not decide alone."""
+        """Share of closest-hit rays that the device did not decide."""
         return (self.closest_decided + self.closest_walked) / self.closest if self.closest else 0.0
 
     @property
     def any_share(self) -> float:
-        """The share of rays asked for any hit that the device did not decide."""
+        """Share of any-hit rays that the device did not decide."""
         return (self.any_decided + self.any_walked) / self.any if self.any else 0.0

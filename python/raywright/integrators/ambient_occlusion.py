@@ -12,7 +12,7 @@ from .base import CoreIntegrator
 
 @dataclass(frozen=True)
 class AmbientOcclusion(CoreIntegrator):
-    """Ambient occlusion: the share of directions in which nothing is near.
+    """Ambient occlusion: the share of directions without an occluder within a radius.
 
     After Zhukov, Iones and Kronin (1998). The background is white.
 
@@ -30,7 +30,7 @@ class AmbientOcclusion(CoreIntegrator):
     ValueError
         If a number is out of its range.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

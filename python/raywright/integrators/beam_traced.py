@@ -16,33 +16,33 @@ from .base import CoreIntegrator
 class BeamTraced(CoreIntegrator):
     """Beam tracing (Heckbert and Hanrahan 1984): polygonal beams in place of rays, and edges that are exact.
 
-    All that the camera sees is one beam. Faces part it into polygons, flat mirrors throw these back, panes
-    and flat faces of glass let them through, and beams from lights part them into lit and shadowed. A pixel
-    is the sum over the polygons in its square of their areas there, each times its radiance, taken at three
-    points of each of its triangles; so the picture has no noise, and one sample is as good as many (with two,
-    the error is 0 where with one it is not known). It is `Whitted`'s picture: all scattering but by mirrors
-    and smooth glass is left to `ambient`.
+    One beam covers the whole view. Faces cut it into polygons; flat mirrors reflect them, panes and flat
+    glass transmit them, and beams from lights divide them into lit and shadowed parts. A pixel sums area
+    times radiance over the polygons in its square, with the radiance evaluated at three points of each
+    triangle. So the picture has no noise, and one sample is as good as many (an error estimate of 0 needs
+    two). The picture is that of `Whitted`: `ambient` replaces all scattering except by mirrors and smooth
+    glass.
 
-    Refraction is an approximation, as in the paper: behind a face of glass, rays have no point in common. The
-    beam gets one from which its middle ray is exact and the others go by tangents in the place of Snell's
-    sines. Beams are cut until that is off by no more than `tolerance`. Behind a window of parallel faces,
-    directions are exact again, and places deviate by the rest of the tolerance within the glass.
+    Refraction is an approximation, as in the paper: behind a face of glass, the rays of a beam have no common
+    origin. The beam gets an origin for which its middle ray is exact, and the others use tangents in place of
+    Snell's sines. Beams are split until the deviation is at most `tolerance`. Behind a window of parallel
+    faces directions are exact again, and positions deviate by the error within the glass.
 
-    Beams meet meshes alone, of any opaque material, `ThinDielectric` or `Dielectric`, in the light of lights
-    without extent (`PointLight`, `SpotLight`, `Projector`, `DirectionalLight`; 64 at most), seen through a
-    pinhole and a `BoxFilter`. Glass throws shadows as other things do. The time grows with the square of the
-    number of faces in view, and with that of refracted beams.
+    Beams support meshes only, of any opaque material, `ThinDielectric` or `Dielectric`. Lights have no extent
+    (`PointLight`, `SpotLight`, `ProjectorLight`, `DirectionalLight`; 64 at most), the camera is a pinhole,
+    and the filter a `BoxFilter`. Glass casts shadows like opaque surfaces. The time grows with the square of
+    the number of visible faces, and of refracted beams.
 
     Parameters
     ----------
     max_depth : int
         Maximum number of surfaces on a light path.
     ambient : float or 3 floats
-        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
-        as in `RayCast`.
+        Uniform radiance in place of light that is not traced; surfaces reflect their ambient share of it, as
+        in `RayCast`.
     tolerance : float
-        Maximum deviation of a refracted ray's direction, in pixels, above 0; infinity cuts no beam for it, as
-        in the paper.
+        Maximum deviation of a refracted ray's direction, in pixels, above 0; with infinity beams are not
+        split for it, as in the paper.
 
     Raises
     ------
@@ -51,7 +51,7 @@ class BeamTraced(CoreIntegrator):
         meshes, shine, have masks, mirror or refract with bent normals, or are two glasses whose boxes
         overlap; environments; other cameras and filters.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

@@ -14,24 +14,24 @@ class Bidirectional(CoreIntegrator):
     """Bidirectional path tracing (Lafortune and Willems 1993; Veach and Guibas 1994): paths from both ends.
 
     Each sample of each pixel traces a path from the camera and another from a light, chosen by its power.
-    Every surface of the one is connected to every surface of the other, to a light and to the camera. Light
-    that can be found in several of these ways counts in each by the balance heuristic, whose weights are
-    gathered along the walks (Georgiev 2012). It finds the light that `Path` and `LightTraced` find, and by
-    connections also light that is hard to reach from either end, such as in a room lit by way of a door ajar.
-    A sample takes several times as long as one of `Path`, which is better in simple scenes.
+    Every vertex of the one is connected to every vertex of the other, to a light and to the camera. The
+    balance heuristic weights these techniques; its weights are accumulated along the paths (Georgiev 2012).
+    It finds the light that `Path` and `LightTraced` find, and by connections also light that is hard to reach
+    from either end, such as through a door ajar. A sample takes several times as long as one of `Path`, which
+    is better in simple scenes.
 
-    It has no bias, and error estimates hold as usual. One kind of path has no connections: from the camera by
-    a mirror or glass to a surface lit by another one from a small light. It is found only if a path hits the
-    light, or with ``vertex_merging=True``.
+    It has no bias, and error estimates hold as usual. One kind of path cannot be connected: a caustic of a
+    small light, seen in a mirror or through glass. It is found only if a path hits the light, or with
+    ``vertex_merging=True``.
 
-    Merged (vertex connection and merging: Georgiev et al. 2012; Hachisuka et al. 2012), each sample of all
-    pixels has photons of its own besides, and every path of the camera gathers those that lie about it on
-    matt surfaces, as `ProgressivePhotonMap` does, from ever less far away. Merging is one more strategy,
-    weighed with all others: most of a picture is as sharp as without it, and light that no other strategy
-    finds is found. Gathered light is blurred while radii are long: ``image.bias`` estimates the blur. With
-    more samples both noise and blur vanish.
+    With vertex merging (vertex connection and merging: Georgiev et al. 2012; Hachisuka et al. 2012), each
+    sample number also has its own photons, and camera paths gather the photons around their vertices on matt
+    surfaces, in a shrinking radius, as `ProgressivePhotonMap` does. Merging is one more technique among the
+    weighted ones: most of a picture is as sharp as without it, and it finds light that no other technique
+    finds. Gathered light is blurred while the radius is large; ``image.bias`` estimates the blur. With more
+    samples both noise and blur vanish.
 
-    Scattering events in media count as surfaces, and are connected as such. There nothing can be merged yet.
+    Scattering events in media count as surfaces and are connected, but not merged.
 
     Parameters
     ----------
@@ -41,23 +41,23 @@ class Bidirectional(CoreIntegrator):
     roulette_depth : int
         Bounces before Russian roulette begins, from either end, at least 0.
     vertex_merging : bool
-        True if paths are merged too (vertex merging).
+        True to add vertex merging.
     radius : float, optional
-        Merged, how far photons may lie in the first sample; of the squared radii, that of sample s + 1 is (s
-        + 2/3) / (s + 1) of that of s. If not given, the distance of a photon's 24th neighbor in half of all
-        cases, by the scene and the number of photons.
+        Gathering radius of the first sample, with vertex merging. The squared radius of sample s + 1 is that
+        of sample s times (s + 2/3) / (s + 1). If not given, the median distance of a photon's 24th neighbor,
+        estimated from the scene and the number of photons.
     photons : int, optional
-        Merged, paths from lights for each sample, 1 to 2**31 - 1. If not given, as many as there are pixels,
-        but at least 1,024 and at most about a million. They take some 100 bytes for each surface come to.
+        Light paths of each sample, with vertex merging: 1 to 2**31 - 1. If not given, the number of pixels,
+        but at least 1,024 and at most about a million. Each photon takes some 100 bytes.
 
     Raises
     ------
     ValueError
-        If a number is out of its range, or `radius` or `photons` are given and nothing is merged. When
+        If a number is out of its range, or `radius` or `photons` is given without `vertex_merging`. When
         rendering: with `adaptive=True`; if no path can start at a light of the scene (infinite emitters,
-        emitters that move in instances); and merged, if the scene has media.
+        emitters that move in instances); or with `vertex_merging`, if the scene has media.
     TypeError
-        If a number is none, or `vertex_merging` is neither True nor False.
+        If an argument is not a number, or `vertex_merging` is neither True nor False.
 
     See Also
     --------

@@ -15,27 +15,27 @@ from .base import CoreIntegrator
 class ConeTraced(CoreIntegrator):
     """Cone tracing (Amanatides 1984): one cone a pixel in place of samples.
 
-    A cone has the solid angle of its pixel. A hit counts by the share of the cone that it covers, the nearest
-    first. A lamp throws a soft shadow by the unoccluded share of the cone to it: exact for a sphere hidden by
-    one sphere; a face is taken for a cone of its solid angle. Mirrors throw cones back, wider where they
-    bulge, and a rough `Conductor` (of GGX facets) throws them back as wide as half of its light is spread. So
-    a picture has no noise, and one sample is as good as many (with two, the error is 0 where with one it is
-    not known). It is biased by design, as `Whitted` is, and where a cone covers different surfaces: surfaces
-    are shaded at one point of each face, spheres dim everything behind them evenly, and rough metal at a
-    grazing angle is too dark, by the part of its cone below the surface.
+    A cone has the solid angle of its pixel. Hits are weighted by the share of the cone that they cover, front
+    to back. Soft shadows follow from the unoccluded share of the cone to a lamp: exact for a sphere behind
+    one other sphere; a face is treated as a cone of equal solid angle. Mirrors reflect cones, wider at convex
+    surfaces, and a rough `Conductor` (GGX) reflects a cone that holds half of its scattered light. So a
+    picture has no noise, and one sample is as good as many (an error estimate of 0 needs two). It is biased
+    by design, like `Whitted`, and also where a cone covers several surfaces: each face is shaded at one
+    point, spheres dim everything behind them evenly, and rough metal at a grazing angle is too dark by the
+    part of its cone below the surface.
 
-    Cones meet meshes and spheres, of any opaque material or `ThinDielectric`, in the light of surfaces that
-    shine and of lights without extent, seen through a pinhole and a `BoxFilter`.
+    Cones support meshes and spheres, of any opaque material or `ThinDielectric`. Lights are emissive surfaces
+    and lights without extent; the camera is a pinhole, and the filter a `BoxFilter`.
 
     Parameters
     ----------
     max_depth : int
         Maximum number of surfaces on a light path.
     contribution : float
-        Cones that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
+        Minimum share of a pixel's value for a cone to be followed: 0 (all are) to below 1.
     ambient : float or 3 floats
-        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
-        as in `RayCast`.
+        Uniform radiance in place of light that is not traced; surfaces reflect their ambient share of it, as
+        in `RayCast`.
 
     Raises
     ------
@@ -43,7 +43,7 @@ class ConeTraced(CoreIntegrator):
         If a number is out of its range. When rendering, if cones do not support the scene: shapes that are
         neither meshes nor spheres, have masks, or are of glass; environments; other cameras and filters.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

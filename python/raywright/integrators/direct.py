@@ -13,14 +13,14 @@ class Direct(CoreIntegrator):
     """Direct lighting: emitters, and surfaces that they light in one bounce.
 
     Lights and surfaces are both sampled and combined by multiple importance sampling (Veach and Guibas 1995).
-    It is ``Path(max_depth=1)`` with a choice of how often each is sampled.
+    It is ``Path(max_depth=1)`` with a choice of both numbers of samples.
 
     Parameters
     ----------
     light_samples : int
-        Light samples at each point seen, from equal shares of the lights: 1 to 1024.
+        Light samples at each visible point, stratified over the lights: 1 to 1024.
     surface_samples : int
-        Directions drawn from the scattering there, 1 to 1024.
+        BSDF samples at each visible point, 1 to 1024.
 
     Raises
     ------

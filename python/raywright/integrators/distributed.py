@@ -15,25 +15,25 @@ from .base import CoreIntegrator
 class Distributed(CoreIntegrator):
     """Distributed ray tracing (Cook, Porter and Carpenter 1984): soft shadows, gloss, depth of field, motion.
 
-    A direction is followed where the surface scatters into it with a density of more than 1 per steradian,
-    three times the most that a matt one has. Diffuse light between surfaces is left to `ambient`.
+    Scattered rays are followed only where the density of scattering exceeds 1 per steradian, three times the
+    maximum of a matt surface. Diffuse light between surfaces is replaced by `ambient`.
 
     Parameters
     ----------
     max_depth : int
         Maximum number of surfaces on a light path.
     splits : int
-        Rays that the first surface splits one into, and light samples there: 1 to 1024.
+        Number of scattered rays, and of light samples, at the first surface: 1 to 1024.
     ambient : float or 3 floats
-        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
-        as in `RayCast`.
+        Uniform radiance in place of light that is not traced; surfaces reflect their ambient share of it, as
+        in `RayCast`.
 
     Raises
     ------
     ValueError
         If a number is out of its range.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

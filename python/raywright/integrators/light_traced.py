@@ -13,10 +13,9 @@ class LightTraced(CoreIntegrator):
     """Light tracing (Arvo 1986; Dutré, Lafortune and Willems 1993): paths that start at lights.
 
     Each sample of each pixel traces a path from a light, chosen by its power; each of its surfaces is
-    connected to the camera, wherever on the film that is. Emitters are seen by the camera's own rays. So it
-    finds caustics, light that mirrors and glass throw on matt surfaces, which path tracing hardly finds. It
-    never finds light that the camera sees in a mirror or through glass: only emitters are seen there.
-    Scattering events in media count as surfaces.
+    connected to the camera, at any pixel of the film. Camera rays add emitters that are directly visible. So
+    it finds caustics, which path tracing hardly finds. It never finds light that the camera sees in a mirror
+    or through glass; only emitters are visible there. Scattering events in media count as surfaces.
 
     Error estimates hold as usual, since contributions of different samples are independent.
 

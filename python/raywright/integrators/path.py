@@ -15,8 +15,8 @@ _SIDES = (1, 2, 4, 8)
 class Path(CoreIntegrator):
     """Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
 
-    The estimator is Kajiya's (1986); emitters are sampled at every bounce and combined with the path's own
-    hits by the power heuristic (Veach 1997).
+    The estimator is Kajiya's (1986). Emitters are sampled at every bounce, and the power heuristic combines
+    these samples with emitters that the path hits (Veach 1997).
 
     Parameters
     ----------
@@ -27,33 +27,33 @@ class Path(CoreIntegrator):
         Bounces before Russian roulette begins, at least 0.
     reuse : int, optional
         Side of the square patches of pixels that share paths: 1, 2, 4 or 8, where 1 shares nothing. If not
-        given, `render` chooses 1, 4 or 8 by a pilot, and 1 for small pictures of few samples. Radiance that a
-        path finds from its second surface on counts for every pixel of the patch whose own first surface sees
-        that second one (Bekaert, Sbert and Halton 2002), weighed by the density of each pixel's sampling,
-        which leaves no bias. It pays where surfaces are matt and most light is indirect, as in a room: rays
-        between all these points cost time, and direct light gains nothing.
+        given, `render` chooses 1, 4 or 8 by a pilot, and 1 for small pictures of few samples. The radiance
+        that a path finds from its second surface on also counts for all pixels of the patch whose first
+        surface sees that second surface (Bekaert, Sbert and Halton 2002). It is weighted by the sampling
+        density of each pixel, so there is no bias. Sharing pays where surfaces are matt and most light is
+        indirect, as in a room: the rays between these points cost time, and direct light gains nothing.
 
         Only light from one `Diffuse` surface to another is shared; other paths are unaffected. Nothing is
-        shared where something moves, and in scenes with masks, with media in one another or with textures
-        that are filtered by width. With `Homogeneous` media, only light is shared from the first scattering
-        of a path in a medium to the next one in the same medium, or to a `Diffuse` surface in it or beyond
-        its end; light of points and wavelengths are not shared there. It pays where most light is scattered
-        often, and pixels are small beside the way between. Patches are cut elsewhere for each sample, so
-        pixels err together with those around them, and noise is as coarse as a patch. The error estimate
-        knows it: its interval is wider than without, most so in small pictures.
+        shared in scenes with motion, masks, nested media or filtered textures. With `Homogeneous` media,
+        light is shared from the first scattering of a path in a medium to the next one in the same medium, or
+        to a `Diffuse` surface in it or beyond its end. Point lights and spectral scenes are not shared there.
+        It pays where most light is scattered often, and the mean free path is large compared to a pixel. The
+        grid of patches is shifted for each sample. Errors of neighboring pixels are correlated, and noise is
+        as coarse as a patch. The error estimate accounts for this: its interval is wider, most of all in
+        small pictures.
     caustics : bool, optional
         True if matt surfaces guide paths towards caustics; if not given, `render` chooses by a pilot, and
-        False for small pictures of few samples. Photons are sent from the lights before the first render of a
-        scene, and paths draw some of their directions from where those came from (Jensen 1995), the others as
-        ever, weighed by the density of both, which leaves no bias. It pays where small lamps shine through
-        glass or into mirrors: most paths find the light of would-be fireflies. Elsewhere it takes samples
-        from other light, and time, and it has no effect where nothing is sharp. With `reuse`, first surfaces
-        do not aim where paths are shared.
+        False for small pictures of few samples. Photons are traced before the first render of a scene. Paths
+        then sample some of their directions towards the origins of nearby photons (Jensen 1995), and the
+        others as usual; both are weighted by the combined density, so there is no bias. It pays where small
+        lamps shine through glass or into mirrors, because it removes most fireflies. Elsewhere it costs time
+        and takes samples from other light; without mirrors and smooth glass it has no effect. With `reuse`,
+        the first surfaces of shared paths are not guided.
 
     Raises
     ------
     ValueError
-        If a number is negative, or `reuse` none of the four.
+        If a number is negative, or `reuse` is not one of the four.
     TypeError
         If it is not an integer, or `caustics` is not True, False or None.
 

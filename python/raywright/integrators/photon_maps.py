@@ -37,35 +37,34 @@ def _settle(of: PhotonMap | ProgressivePhotonMap) -> None:
 class PhotonMap(CoreIntegrator):
     """Photon mapping (Jensen 1996, 2001): radiance from the density of photons.
 
-    Paths from the lights leave photons on matt surfaces, those whose scattering is wider than that of a
-    roughness of 0.2. Paths of the camera go through mirrors, glass and gloss until they come to such a
-    surface. There lights are sampled directly and a caustic map gives the light of mirrors and glass. Final
-    gather rays find the surfaces beyond, where the same holds, with a global map for all other light. So
-    light of a small lamp through glass is found that is seen through glass, which no path finds. Without matt
-    surfaces, the picture is that of paths. Where a medium scatters the camera's path, photons scattered
-    nearby give all of its light (Jensen and Christensen 1998).
+    Light paths store photons on matt surfaces: those that scatter more widely than a roughness of 0.2. Camera
+    paths continue through mirrors, glass and gloss up to such a surface. There, lights are sampled directly,
+    and a caustic map adds light from mirrors and glass. Final gather rays do the same at the next matt
+    surface, with a global map for all other light. So even caustics that are seen through glass are found,
+    which no path finds. Without matt surfaces, the picture equals that of path tracing. Where a medium
+    scatters the camera's path, the photons nearby in the medium give its light (Jensen and Christensen 1998).
 
     Density estimation blurs: the picture is biased, however many samples it has, and ``image.bias`` estimates
-    the bias, with the error ``image.bias_error``; ``image.standard_error`` is the noise besides. Each batch
-    of samples (``image.plan.sampler``) has maps of its own, so the error includes the noise of maps.
+    the bias, with the error ``image.bias_error``; ``image.standard_error`` is the noise. Each batch of
+    samples (``image.plan.sampler``) has its own maps, so the standard error includes the noise of maps.
 
     Parameters
     ----------
     photons : int
         Paths from lights for each map, 1 to 2**31 - 1. Maps take about 100 bytes for each photon kept.
     k_nearest : int or None
-        Number N of photons for a density: the farthest gives the radius, and N - 1 count (García et al.
-        2012). With None, all within the radius.
+        Number N of photons in a density estimate: the farthest one sets the radius, and N - 1 count (García
+        et al. 2012). With None, all photons within `radius` count.
     radius : float, optional
-        Maximum distance of photons, at surfaces and in media. If not given, 8 times as far as N neighbours of
-        a photon lie there, in half of all cases, or, with ``k_nearest=None``, as far as the 24th does.
+        Maximum distance of photons, at surfaces and in media. If not given, 8 times the median distance of a
+        photon's N-th neighbor or, with ``k_nearest=None``, the median distance of its 24th neighbor.
     caustic : bool
-        True if caustics have a map of their own, which is looked up where the camera's paths end. If not,
-        rays have to find it, or with ``final_gather=0`` it is part of the global map.
+        True for a separate caustic map, which is looked up at the first matt surface. If False, final gather
+        rays have to find caustics or, with ``final_gather=0``, they are part of the global map.
     final_gather : int
-        Rays from the first matt surface, 0 to 1024; with 0, the global map is looked up there at once.
+        Rays from the first matt surface, 0 to 1024; with 0, the global map is looked up at that surface.
     maps : int
-        Maps that each batch of samples is spread over, where it has as many samples, 1 to 65536.
+        Number of maps for each batch of samples, 1 to 65536, but at most one for each sample.
     filter : {"box", "cone", "epanechnikov"}
         Kernel of the density estimate: constant, or falling with the distance (Jensen's cone with k = 1;
         Epanechnikov 1969), which blurs less and is noisier.
@@ -78,11 +77,11 @@ class PhotonMap(CoreIntegrator):
     Raises
     ------
     ValueError
-        If a number is out of its range, or `filter` none of the three. When rendering: with `adaptive=True`,
-        or if no photon can start at a light of the scene (infinite emitters, emitters that move in instances,
-        media that glow).
+        If a number is out of its range, or `filter` is not one of the three. When rendering: with
+        `adaptive=True`, or if no photon can start at a light of the scene (infinite emitters, emitters that
+        move in instances, media that glow).
     TypeError
-        If a number is none.
+        If an argument is not a number.
 
     See Also
     --------
@@ -121,13 +120,13 @@ class PhotonMap(CoreIntegrator):
 
 @dataclass(frozen=True)
 class ProgressivePhotonMap(CoreIntegrator):
-    """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that goes to zero.
+    """Progressive photon mapping (Hachisuka et al. 2008; Knaus and Zwicker 2011): blur that vanishes.
 
-    Like `PhotonMap`, with a map for each sample of all pixels and a shrinking radius: the squared radius, or
-    in media the cubed radius, of map s + 1 is (s + alpha) / (s + 1) of that of map s. Both noise and bias
+    Like `PhotonMap`, with a map for each sample of all pixels and a shrinking radius: the squared radius (in
+    media, the cubed radius) of map s + 1 is that of map s times (s + alpha) / (s + 1). Both noise and bias
     vanish with more samples, so ``error=`` and ``seconds=`` may be as strict as needed. With ``alpha=2/3``
-    the error falls as the cube root of the samples' number, relMSE as its 2/3rd power, which is optimal.
-    ``image.error`` is the noise alone; ``image.bias`` is the remaining bias.
+    the error falls with the power -1/3 of the number of samples, and relMSE with the power -2/3, which is
+    optimal. ``image.error`` is the noise alone; ``image.bias`` is the remaining bias.
 
     Parameters
     ----------
@@ -135,13 +134,13 @@ class ProgressivePhotonMap(CoreIntegrator):
         Paths from lights for each map, 1 to 2**31 - 1. If not given, four for each pixel, from 20,000 to
         500,000: about as much work as the rest.
     radius : float, optional
-        Maximum distance of photons in the first map, at surfaces and in media. If not given, the distance of
-        a photon's 24th neighbor there in half of all cases, by the scene and the number of photons.
+        Maximum distance of photons in the first map, at surfaces and in media. If not given, the median
+        distance of a photon's 24th neighbor, estimated from the scene and the number of photons.
     alpha : float
-        The share of new photons that is kept, above 0 and at most 1: with more, radii shrink more slowly,
-        for less noise and more bias.
+        Share of new photons that is kept, above 0 and at most 1. A larger share shrinks the radius more
+        slowly: less noise, more bias.
     final_gather : int
-        Rays from the first matt surface, 0 to 1024; with 0, all is looked up there.
+        Rays from the first matt surface, 0 to 1024; with 0, the map is looked up at that surface.
     filter : {"box", "cone", "epanechnikov"}
         Kernel of the density estimate.
     max_depth : int or None
@@ -153,9 +152,10 @@ class ProgressivePhotonMap(CoreIntegrator):
     Raises
     ------
     ValueError
-        If a number is out of its range, or `filter` none of the three. When rendering, as for `PhotonMap`.
+        If a number is out of its range, or `filter` is not one of the three. When rendering, as for
+        `PhotonMap`.
     TypeError
-        If a number is none.
+        If an argument is not a number.
 
     See Also
     --------

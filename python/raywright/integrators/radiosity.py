@@ -14,7 +14,7 @@ from .base import CoreIntegrator
 
 @dataclass(frozen=True)
 class Radiosity(CoreIntegrator):
-    """Lookup of a radiosity solution from any camera: one ray a sample, without further scattering.
+    """Display of a radiosity solution from any camera: one ray a sample, without further scattering.
 
     A hit shows its emission and the reflected irradiance of its patch. Textures are those of the scene, not
     the means of patches; rays that miss see the environment.
@@ -22,14 +22,14 @@ class Radiosity(CoreIntegrator):
     Parameters
     ----------
     solution : RadiositySolution
-        Result of `radiosity` for the scene that is rendered; smooth with ``per="vertex"``.
+        Result of `radiosity` for the rendered scene; with ``per="vertex"`` it is interpolated.
 
     Raises
     ------
     TypeError
-        If it is no solution.
+        If it is not a solution.
     ValueError
-        When rendering, if it is of another scene, by its number of faces or their area.
+        When rendering, if the number of faces or their area shows that it belongs to another scene.
 
     See Also
     --------

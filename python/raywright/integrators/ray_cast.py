@@ -15,24 +15,24 @@ from .base import CoreIntegrator
 class RayCast(CoreIntegrator):
     """Ray casting with shadows (Appel 1968): direct light at the first hit, and ambient light.
 
-    Nothing is followed further: mirrors and glass are black.
+    Rays end there: mirrors and glass are black.
 
     Parameters
     ----------
     ambient : float or 3 floats
-        Radiance that arrives from everywhere, unshadowed. Surfaces reflect their ambient share of it: `Phong`
-        and `BlinnPhong` have one of their own, smooth materials none, others about their albedo.
+        Uniform radiance, without shadows. Surfaces reflect a share of it: the parameter `ambient` of `Phong`
+        and `BlinnPhong`, nothing for smooth materials, about the albedo for others.
     shadows : bool
         True if occluders shadow lights.
     light_samples : int
-        Light samples at each point seen, from equal shares of the lights: 1 to 1024.
+        Light samples at each visible point, stratified over the lights: 1 to 1024.
 
     Raises
     ------
     ValueError
         If a number is out of its range.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

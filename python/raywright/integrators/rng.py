@@ -12,13 +12,13 @@ from ..arrays import SeedLike, seed_number
 class Rng:
     """The random numbers of a batch of samples: functions of seed, pixel, sample and dimension alone.
 
-    Each call takes the next dimension for the whole batch, so a picture has the same bits however its pixels
-    and samples are split into batches, as long as an integrator makes the same calls in the same order.
+    Each call takes the next dimension for the whole batch, so a picture has the same bits for any division of
+    its pixels and samples into batches, if the integrator makes the same calls in the same order.
 
     Parameters
     ----------
     seed : int, Generator or SeedSequence
-        That of the picture.
+        Seed of the picture.
     pixel, sample : (N,) uint32
         Pixel and sample index of each entry.
 
@@ -50,12 +50,12 @@ class Rng:
         return len(self._pixel)
 
     def next_1d(self, which: ArrayLike | None = None) -> NDArray[np.float64]:
-        """Return a number in [0, 1), of 53 bits, for each entry: (N,), or (K,) for those that `which` picks.
+        """Return a number in [0, 1), of 53 bits, for each entry: (N,), or (K,) for the entries in `which`.
 
         Parameters
         ----------
         which : (K,) integer or (N,) bool array, optional
-            Entries of the batch; all if not given. Calls with fewer entries take as many dimensions.
+            Entries of the batch; all if not given. A call with fewer entries takes the same dimensions.
 
         Returns
         -------
@@ -77,12 +77,12 @@ class Rng:
         return self._next(which, False)
 
     def next_2d(self, which: ArrayLike | None = None) -> NDArray[np.float64]:
-        """Return two numbers in (0, 1), of 32 bits each, for each entry: (N, 2), or (K, 2). As `one`.
+        """Return two numbers in (0, 1), of 32 bits each, for each entry: (N, 2), or (K, 2) with `which`.
 
         Parameters
         ----------
         which : (K,) integer or (N,) bool array, optional
-            As for `one`.
+            As for `next_1d`.
 
         Returns
         -------

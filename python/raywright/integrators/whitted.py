@@ -16,27 +16,27 @@ class Whitted(CoreIntegrator):
     """Whitted's ray tracing (1980): lights, ambient light, and both the reflected and the refracted ray.
 
     Only smooth surfaces are followed, to a depth or for as long as they contribute (Hall and Greenberg 1983);
-    diffuse light between surfaces is left to `ambient`, so the picture is biased by design, and without noise
-    for point lights and a pinhole camera.
+    diffuse light between surfaces is replaced by `ambient`. So the picture is biased by design; with point
+    lights and a pinhole camera it has no noise.
 
     Parameters
     ----------
     max_depth : int
         Maximum number of surfaces on a light path.
     contribution : float
-        Rays that contribute less than this share to their pixel are not followed: 0 (all are) to below 1.
+        Minimum share of a pixel's value for a ray to be followed: 0 (all are) to below 1.
     ambient : float or 3 floats
-        Uniform radiance in place of light that is not followed; surfaces reflect their ambient share of it,
-        as in `RayCast`.
+        Uniform radiance in place of light that is not traced; surfaces reflect their ambient share of it, as
+        in `RayCast`.
     light_samples : int
-        Light samples at the first surface, from equal shares of the lights: 1 to 1024.
+        Light samples at the first surface, stratified over the lights: 1 to 1024.
 
     Raises
     ------
     ValueError
         If a number is out of its range.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

@@ -13,7 +13,7 @@ from .light import Environment
 
 @dataclass(frozen=True, init=False)
 class ConstantEnvironment(Environment):
-    """The same radiance from every direction that the scene leaves open.
+    """A uniform environment: the same radiance from all directions.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class ConstantEnvironment(Environment):
     Raises
     ------
     ValueError
-        If a number is negative or not finite, or there are not 1 or 3 of them.
+        If a number is negative or not finite, or there are neither 1 nor 3 of them.
     TypeError
         If it is not a number.
 

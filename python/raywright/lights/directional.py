@@ -13,12 +13,12 @@ from .light import Light
 
 @dataclass(frozen=True, init=False)
 class DirectionalLight(Light):
-    """Light that comes from far outside along a single direction, as of a star.
+    """Light from infinity along a single direction, as from a star.
 
     Parameters
     ----------
     direction : 3 floats
-        Direction in which it travels, of any length but 0.
+        Direction in which the light travels, of any length but 0.
     irradiance : float, 3 floats or Spectrum
         Irradiance of a surface that faces it in W·m⁻², at least 0: one number, or red, green and blue.
 

@@ -20,24 +20,24 @@ SIDES = ("front", "back", "both")
 
 @dataclass(frozen=True, init=False)
 class Emission:
-    """Emission of a surface: the `emission` of a shape that shines on its back, or on both sides.
+    """Emission of a surface by side: front, back or both.
 
     Normals point to the front: the outside of a closed shape, and the side where the corners of a face turn
-    anticlockwise. A sphere whose back shines lights its inside.
+    anticlockwise. A sphere that emits on its back lights its inside.
 
     Parameters
     ----------
     radiance : float, 3 floats, Spectrum or Texture
         Radiance in W·sr⁻¹·m⁻², at least 0: one number, or red, green and blue, by wavelength, or a texture.
     both_sides : bool
-        Short for ``side="both"``.
+        True is the same as ``side="both"``.
     side : {"front", "back", "both"}, optional
-        The side that shines; the front if not given.
+        The side that emits; the front if not given.
 
     Raises
     ------
     ValueError
-        If a number is negative or not finite, there are not 1 or 3 of them, or there is no such side.
+        If a number is negative or not finite, there are neither 1 nor 3 of them, or there is no such side.
     TypeError
         If it is not a number, or `both_sides` is no bool.
 
@@ -70,7 +70,7 @@ class Emission:
 
     @property
     def both_sides(self) -> bool:
-        """True if both sides shine."""
+        """True if both sides emit."""
         return self.side == "both"
 
 

@@ -15,18 +15,18 @@ from .pictured import Pictured, Texels, texels
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class EnvironmentMap(Pictured, Environment):
-    """An equirectangular picture all around a scene, drawn from by its light.
+    """An equirectangular picture around the scene, importance sampled by its radiance.
 
     The middle of the picture is seen along -z, its top at +y, and its right half towards +x: as a `Camera`
     sees it that looks along -z. Radiance is interpolated between the middles of texels, and sampled exactly:
-    a sun of one texel does no harm.
+    a sun of one texel causes no extra noise.
 
     Parameters
     ----------
     image : (H, W, 3) or (H, W) array, or path
-        Linear radiance from the top row on, at least 0, kept as read-only float32. A path is that of an .exr,
-        .hdr or .npy file of linear colours, or of a picture of 8 bits, which are taken as sRGB. Negative
-        values become 0, with a warning, in files and where they are a hundredth of all light or less.
+        Linear radiance from the top row on, at least 0, kept as read-only float32. A path names an .exr, .hdr
+        or .npy file of linear colors, or an 8-bit picture, which is taken as sRGB. Negative values become 0,
+        with a warning, if they come from a file or are at most a hundredth of all light.
     to_world : (3, 3) or (4, 4) array, optional
         A rotation, or a reflection, from the picture's space to the world.
     scale : float
@@ -38,7 +38,7 @@ class EnvironmentMap(Pictured, Environment):
         If the image is empty, of another shape, negative or not finite; if `to_world` is no rotation; or if
         `scale` is negative or not finite.
     TypeError
-        If something is not numbers.
+        If an argument does not hold numbers.
     FileNotFoundError
         If a file is missing.
 

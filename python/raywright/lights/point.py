@@ -13,7 +13,7 @@ from .light import Light
 
 @dataclass(frozen=True, init=False)
 class PointLight(Light):
-    """A point that shines evenly into all directions.
+    """A point light that emits equally in all directions.
 
     Parameters
     ----------

@@ -16,20 +16,20 @@ from .pictured import Pictured, Texels, texels
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class ProjectorLight(Pictured, Light):
-    """A slide projector: a point whose light goes through a picture only.
+    """A slide projector: a point light that emits through a picture.
 
-    A screen at right angles to its axis shows the picture as bright at the corners as in the middle: the
-    intensity goes with the inverse cube of the cosine to the axis, times the picture.
+    On a screen at right angles to the axis, the corners of the picture are as bright as its middle: the
+    intensity is the picture over the cube of the cosine to the axis.
 
     Parameters
     ----------
     image : (H, W, 3) or (H, W) array, or path
-        Linear colours from the top row on, at least 0, kept as read-only float32; a path as `EnvironmentMap`
-        takes it.
+        Linear colours from the top row on, at least 0, kept as read-only float32; or a path, as for
+        `EnvironmentMap`.
     position : 3 floats
         Position, in the scene's unit of length.
     target : 3 floats
-        The point that the middle of the picture is thrown to.
+        The point that the middle of the picture is projected to.
     up : 3 floats
         The direction that points up in the projected picture.
     fov : float
@@ -43,7 +43,7 @@ class ProjectorLight(Pictured, Light):
         If the image is empty, of another shape, negative or not finite; if a number is out of its range; or
         if `position` is `target` or `up` is zero or along the axis.
     TypeError
-        If something is not numbers.
+        If an argument does not hold numbers.
     FileNotFoundError
         If a file is missing.
 

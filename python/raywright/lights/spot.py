@@ -16,7 +16,7 @@ Profile: TypeAlias = Literal["smooth", "linear"]
 
 @dataclass(frozen=True, init=False)
 class SpotLight(Light):
-    """A point that shines into a cone, evenly in its middle and falling off to its rim.
+    """A point light that emits into a cone: constant in its middle, falling off to its rim.
 
     Parameters
     ----------
@@ -29,17 +29,17 @@ class SpotLight(Light):
     angle : float
         Angle between the axis and the rim in degrees, above 0 and at most 90.
     falloff : float
-        Over how many degrees, inwards from the rim, it falls off: 0 to `angle`.
+        Width of the falloff in degrees, inwards from the rim: 0 to `angle`.
     profile : {"smooth", "linear"}
-        How: "smooth" takes the cosine to the axis through the cubic ``x² (3 - 2x)``, which is level at both
-        ends; "linear" goes evenly with the angle to the axis.
+        Shape of the falloff: "smooth" is the cubic ``x² (3 - 2x)`` of the cosine to the axis, with slope 0 at
+        both ends; "linear" is linear in the angle to the axis.
 
     Raises
     ------
     ValueError
         If a number is out of its range or not finite, `target` is `position`, or `profile` is none of those.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------

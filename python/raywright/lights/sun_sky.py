@@ -21,11 +21,11 @@ class SunSky(Environment):
 
     The sky is that of Preetham, Shirley and Smits ("A Practical Analytic Model for Daylight", 1999). The sun
     is a disk of 0.53°, a black body of 5778 K seen through the air of the same paper. Radiance is in
-    W·sr⁻¹·m⁻² as the eye weighs it: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
+    W·sr⁻¹·m⁻², weighted by the eye's sensitivity: its luminance times 683 lm·W⁻¹ is in cd·m⁻².
 
-    The formula of the sky ends at sunset. From there on it is the sky of sunset, darker as the illuminance of
-    the ground is through twilight (Seidelmann, "Explanatory Supplement to the Astronomical Almanac", 1992),
-    and black once the sun is 18° below the horizon: there are no moon and no stars.
+    The formula of the sky ends at sunset. In twilight it is the sky of sunset, dimmed by the illuminance of
+    the ground (Seidelmann, "Explanatory Supplement to the Astronomical Almanac", 1992), and black once the
+    sun is 18° below the horizon: moon and stars are not included.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class SunSky(Environment):
     ValueError
         If a number is out of its range or not finite.
     TypeError
-        If something is not a number.
+        If an argument is not a number.
 
     See Also
     --------
@@ -149,8 +149,8 @@ class SunSky(Environment):
         Parameters
         ----------
         when : datetime, numpy.datetime64, str, or sequence or (N,) array of these
-            The time. A datetime must have its zone, and so must a text in ISO 8601, as
-            ``"2025-06-21T12:00+02:00"``, or with ``Z`` for UTC. A datetime64 has none, and is in UTC.
+            The time. A datetime must have a time zone, and so must ISO 8601 text, such as
+            ``"2025-06-21T12:00+02:00"``, or ``Z`` for UTC. A datetime64 is in UTC.
         latitude, longitude : float
             The place in degrees, north and east positive.
         north : 3 floats

@@ -12,7 +12,7 @@ from .material import Material, shares
 
 @dataclass(frozen=True, init=False)
 class BlinnPhong(Material):
-    """A matt surface with highlights where the normal halves the way from light to viewer.
+    """A matt surface with highlights around the half vector of light and viewer.
 
     Blinn's model (1977), normalised so that `specular` is the share reflected at normal incidence. Both sides
     reflect.
@@ -27,14 +27,14 @@ class BlinnPhong(Material):
     exponent : float or Texture
         Exponent of the cosine, at least 0: highlights get sharper with it.
     ambient : float, 3 floats or Texture, optional
-        Share of ambient light that is reflected, for integrators that know of it; `diffuse` if not given.
+        Share of ambient light that is reflected, for integrators with ambient light; `diffuse` if not given.
 
     Raises
     ------
     ValueError
         If a number is out of range, or the two shares add up to more than 1.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

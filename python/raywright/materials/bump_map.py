@@ -12,7 +12,7 @@ from .material import material as checked
 
 @dataclass(frozen=True, init=False)
 class BumpMap(Material):
-    """A material on a surface that looks as if it were raised.
+    """A material with a bump map.
 
     The shape is unchanged; only its normals change (Blinn, "Simulation of Wrinkled Surfaces", 1978).
 
@@ -30,7 +30,7 @@ class BumpMap(Material):
     ValueError
         If a number is not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -17,37 +17,37 @@ from .material import Material, Rough, facets, rough
 class Conductor(Material):
     """A metal, smooth or rough, which may be brushed: rougher along one direction than across.
 
-    Light that facets throw on facets is made up for (Kulla and Conty, 2017). Both sides reflect.
+    Multiple scattering between facets is included (Kulla and Conty 2017). Both sides reflect.
 
     A named metal has the color of its spectrum: at each angle, Fresnel's reflectance by the measured index of
     refraction, integrated over the wavelengths of daylight (CIE D65) as the standard observer sees them (CIE
-    1931), in linear Rec. 709. So a light of (1, 1, 1) looks in it as in a spectral renderer with daylight as
-    white. A channel's reflectance may exceed 1: gold is (1.022, 0.782, 0.344), an orange outside the gamut of
-    red, green and blue. In repeated reflections by gold, each but the first gives at most 96.2 % of the red,
-    the reflectance of the wavelength that is reflected best: two and five reflections are right to 3 % so,
-    and energy stays bounded. An integrator in Python sees each reflection as if it were the first.
+    1931), in linear Rec. 709. So a light of (1, 1, 1) has the same reflection as in a spectral renderer with
+    daylight as white. A channel's reflectance may exceed 1: gold is (1.022, 0.782, 0.344), an orange outside
+    the gamut of red, green and blue. In repeated reflections by gold, each one after the first reflects at
+    most 96.2 % of the red, the maximum over all wavelengths. So two to five reflections are correct to 3 %,
+    and energy stays bounded. An integrator in Python gets the value of the first reflection each time.
 
     Parameters
     ----------
     metal : str, optional
-        Its name or symbol, as ``"gold"`` or ``"Au"``; `metals` lists all names, `metal_index` has the
+        Name or symbol, such as ``"gold"`` or ``"Au"``; `metals` lists all names, `metal_index` has the
         measured index of each.
     eta, k : float, 3 floats or Texture, optional
-        Real and imaginary part of its index of refraction, in place of a name: above 0, and at least 0. Three
-        are those of red, green and blue, each with a reflectance of its own.
+        Real and imaginary part of its index of refraction, in place of a name: `eta` above 0, `k` at least 0.
+        Three numbers are for red, green and blue.
     roughness : float, Texture, or a pair of them, optional
-        Roughness from 0, smooth, to 1; along u and along v if they are two. Its square is the alpha of its
-        facets' distribution, as in glTF. 0 if not given.
+        Roughness from 0, smooth, to 1; a pair is along u and along v. Its square is the alpha of its facets'
+        distribution, as in glTF. 0 if not given.
     alpha : float, Texture, or a pair of them, optional
-        Alpha itself, in place of `roughness`.
+        Alpha, in place of `roughness`.
     distribution : {"ggx", "beckmann"}
         Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
-        through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes
-        highlights without a glow around them.
+        through Rough Surfaces", 2007), or "beckmann", a normal distribution (Beckmann and Spizzichino 1963),
+        whose highlights have no glow around them.
     multiple_scattering : bool
-        True to include multiple scattering between facets. If not, that light is lost, so that a surface is
-        the darker the rougher it is, and masking and shadowing are independent: the model of Walter et al.,
-        which many renderers use.
+        True to include multiple scattering between facets. False omits that light, so rougher surfaces are
+        darker, and treats masking and shadowing as independent: the model of Walter et al., which many
+        renderers use.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Conductor(Material):
         If the name is not known, there is neither a name nor both `eta` and `k`, a number is out of range, or
         there is no such distribution.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -159,14 +159,14 @@ def metals() -> tuple[str, ...]:
 def metal_index(metal: str) -> MetalIndex:
     """Return the measured index of refraction of a metal, by wavelength.
 
-    `Conductor` takes it as linear between these wavelengths. The sources are the "Handbook of Optical
-    Constants of Solids" (Palik, 1985 and 1991) and papers that refractiveindex.info lists, one for a metal:
-    they stand with the numbers in ``rust/optics/src/conductors/measured.rs``.
+    `Conductor` interpolates it linearly. The sources are the "Handbook of Optical Constants of Solids" (Palik
+    1985 and 1991) and papers listed by refractiveindex.info; ``rust/optics/src/conductors/measured.rs`` names
+    the source of each metal.
 
     Parameters
     ----------
     metal : str
-        Its name or symbol, as ``"gold"`` or ``"Au"``.
+        Name or symbol, such as ``"gold"`` or ``"Au"``.
 
     Returns
     -------

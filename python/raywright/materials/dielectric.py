@@ -20,51 +20,50 @@ from .material import Material, Rough, facets, rough
 
 @dataclass(frozen=True, init=False)
 class Dielectric(Material):
-    """The surface of something clear, smooth or rough, which reflects and refracts.
+    """A clear solid, smooth or rough, whose surface reflects and refracts.
 
     Normals point outwards; the inside is filled.
 
     Parameters
     ----------
     ior : float, Cauchy or Sellmeier
-        The index of refraction within, above 0: 1.5 for glass, 1.33 for water, 2.42 for diamond. One that
-        goes with wavelength, as those of `glasses`, spreads light into its colours.
+        The index of refraction within, above 0: 1.5 for glass, 1.33 for water, 2.42 for diamond. An index by
+        wavelength, such as those of `glasses`, disperses light.
     roughness : float or Texture, optional
         Roughness from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in glTF. 0 if
         not given.
     alpha : float or Texture, optional
-        Alpha itself, in place of `roughness`.
+        Alpha, in place of `roughness`.
     priority : int
         Priority among overlapping solids; the greatest one counts (Schmidt and Budge, "Simple Nested
         Dielectrics in Ray Traced Images", 2002): a drink may reach into its glass.
     distribution : {"ggx", "beckmann"}
         Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
-        through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes
-        highlights without a glow around them.
+        through Rough Surfaces", 2007), or "beckmann", a normal distribution (Beckmann and Spizzichino 1963),
+        whose highlights have no glow around them.
     multiple_scattering : bool
-        True to include multiple scattering between facets. If not, that light is lost, so that a surface is
-        the darker the rougher it is, and masking and shadowing are independent: the model of Walter et al.,
-        which many renderers use.
+        True to include multiple scattering between facets. False omits that light, so rougher surfaces are
+        darker, and treats masking and shadowing as independent: the model of Walter et al., which many
+        renderers use.
 
     interior : Homogeneous or GridMedium, optional
         Medium inside, which absorbs and scatters light there.
     transmittance : float, 3 floats or Spectrum, optional
-        Tint of the inside, in place of `interior`: the share of light, one number or red, green and blue,
-        above 0 and at most 1, that is left after a way of length `distance` inside (Bouguer, 1729; Beer,
-        1852). It is kept as an `interior` of the absorption -ln(transmittance) / distance; where all is left,
-        there is none. One by wavelength, such as makers of filters publish, must be above 0 from 360 to 830
-        nm.
+        Tint of the inside, in place of `interior`: the share of light that remains after the length
+        `distance` inside, above 0 and at most 1 (Bouguer 1729; Beer 1852). It is stored as an `interior` with
+        the absorption -ln(transmittance) / distance; there is none if all light remains. A spectrum, such as
+        makers of filters publish, must be above 0 from 360 to 830 nm.
     distance : float, optional
-        The length of that way, above 0, in units of the world. 1 if not given.
+        Length that `transmittance` refers to, above 0, in units of the world. 1 if not given.
 
     Raises
     ------
     ValueError
         If `ior` or `distance` is not greater than 0, a roughness is outside [0, 1], there is no such
-        distribution, `transmittance` is not above 0 and at most 1 or comes with `interior`, or `distance`
-        comes without it.
+        distribution, `transmittance` is not above 0 and at most 1, or is given with `interior`, or `distance`
+        is given without it.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -12,20 +12,20 @@ from .material import Material
 
 @dataclass(frozen=True, init=False)
 class Diffuse(Material):
-    """A surface that scatters evenly into all directions (Lambert's law), on both sides.
+    """A diffuse surface by Lambert's law, on both sides.
 
     Parameters
     ----------
     reflectance : float, 3 floats or Texture
-        Share of the arriving light that leaves again, in [0, 1]: one number, or linear red, green and blue.
+        Share of the arriving light that is reflected, in [0, 1]: one number, or linear red, green and blue.
         Numbers are kept as a tuple of 3 floats.
 
     Raises
     ------
     ValueError
-        If a reflectance is outside [0, 1] or not finite, or is not 1 or 3 numbers.
+        If a reflectance is outside [0, 1] or not finite, or there are neither 1 nor 3 numbers.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

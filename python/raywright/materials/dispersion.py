@@ -16,7 +16,7 @@ BLUE, YELLOW, RED = 0.4861327, 0.5875618, 0.6562725
 
 
 class Dispersion(ABC):
-    """An index of refraction that goes with wavelength: a `Cauchy` or a `Sellmeier`.
+    """An index of refraction by wavelength: a `Cauchy` or a `Sellmeier`.
 
     See Also
     --------
@@ -31,7 +31,7 @@ class Dispersion(ABC):
     __slots__ = ()
 
     def index(self, micrometers: ArrayLike = YELLOW) -> Any:
-        """Return the index of refraction in vacuum's wavelengths.
+        """Return the index of refraction at wavelengths in vacuum.
 
         Parameters
         ----------
@@ -76,9 +76,9 @@ class Dispersion(ABC):
 
     @property
     def abbe(self) -> float:
-        """The number of Abbe, (n_d - 1) / (n_F - n_C): how little it disperses.
+        """The Abbe number, (n_d - 1) / (n_F - n_C), which falls with dispersion.
 
-        It goes from 20, much, to 95; infinite without dispersion.
+        Glasses have 20 (strong dispersion) to 95 (weak); infinite without dispersion.
         """
         blue, yellow, red = (self.index(line) for line in (BLUE, YELLOW, RED))
         return float(np.inf) if blue == red else float((yellow - 1) / (blue - red))
@@ -106,7 +106,7 @@ class Cauchy(Dispersion):
     ValueError
         If a number is not finite, or `B` not above 0.
     TypeError
-        If one is no number.
+        If an argument is not a number.
 
     See Also
     --------
@@ -128,7 +128,7 @@ class Cauchy(Dispersion):
 
     @classmethod
     def from_abbe(cls, nd: float, Vd: float) -> Cauchy:
-        """Return the one that has this index at the line d and this number of Abbe.
+        """Return the Cauchy formula with a given index at the d line and a given Abbe number.
 
         Parameters
         ----------
@@ -146,7 +146,7 @@ class Cauchy(Dispersion):
         ValueError
             If a number is not above 0 or not finite.
         TypeError
-            If one is no number.
+            If an argument is not a number.
 
         See Also
         --------
@@ -180,9 +180,9 @@ class Sellmeier(Dispersion):
     Raises
     ------
     ValueError
-        If they are not as many, none, not finite, or one of `C` is below 0.
+        If `B` and `C` differ in length, are empty or not finite, or `C` is below 0.
     TypeError
-        If they are no numbers.
+        If they are not numbers.
 
     See Also
     --------

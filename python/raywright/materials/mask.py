@@ -13,8 +13,8 @@ from .material import material as checked
 class Mask(Material):
     """A material with holes: leaves, lace, fences.
 
-    With partial opacity, rays go through it in proportion, and an emissive shape gives off light in
-    proportion. Holes are for pictures: `Scene.intersect` and the like hit the shape.
+    Partial opacity lets a share of rays pass, and reduces emission by the same share. Holes affect pictures
+    only: `Scene.intersect` and other queries hit the whole shape.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class Mask(Material):
     ValueError
         If `opacity` is outside [0, 1].
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -88,7 +88,7 @@ def number_from(name: str, given: float, least: float) -> float:
     ValueError
         If it is.
     TypeError
-        If it is no number.
+        If it is not a number.
     """
     result = number(name, given)
     if result < least:

@@ -21,8 +21,8 @@ class MediumInterface(Material):
     interior : Homogeneous or GridMedium
         The medium inside.
     priority : int
-        Priority among overlapping filled shapes; the greatest one counts. Of equal ones it is the one with
-        the greater index of refraction, so that glass displaces smoke; and of those, the later one in the
+        Priority among overlapping filled shapes; the greatest one counts. Among equal priorities, the shape
+        with the greater index of refraction counts, so glass displaces smoke; then the later one in the
         scene. Media do not add up.
 
     Raises
@@ -30,7 +30,7 @@ class MediumInterface(Material):
     ValueError
         If `priority` is out of range.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -31,7 +31,7 @@ class MetallicRough(Material):
     ValueError
         If a number is outside [0, 1] or not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

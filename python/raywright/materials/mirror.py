@@ -24,7 +24,7 @@ class Mirror(Material):
     ValueError
         If a reflectance is outside [0, 1] or not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

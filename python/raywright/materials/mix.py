@@ -10,9 +10,9 @@ from .material import Material, material
 
 @dataclass(frozen=True, init=False)
 class Mix(Material):
-    """A share of one material and the rest of another, finely mixed.
+    """A blend of two materials by share.
 
-    The interior is that of the first material that has one.
+    The interior is that of the first material with one.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class Mix(Material):
     ValueError
         If `amount` is outside [0, 1].
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

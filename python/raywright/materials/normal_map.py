@@ -14,7 +14,7 @@ from .material import material as checked
 
 @dataclass(frozen=True, init=False)
 class NormalMap(Material):
-    """A material whose normals a texture turns, as in glTF.
+    """A material with a tangent-space normal map, as in glTF.
 
     Red, green and blue from 0 to 1 are -1 to 1 along u, along v and along the normal.
 
@@ -32,7 +32,7 @@ class NormalMap(Material):
     ValueError
         If a number is not finite, or normals are outside [0, 1].
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -22,14 +22,14 @@ class OrenNayar(Material):
     reflectance : float, 3 floats or Texture
         Share of the light that a facet reflects, in [0, 1].
     roughness : float or Texture
-        Roughness from 0, Lambert's law, to 1. It is not the alpha of any facets.
+        Roughness from 0, Lambert's law, to 1. It is not a GGX alpha.
 
     Raises
     ------
     ValueError
         If a number is outside [0, 1] or not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

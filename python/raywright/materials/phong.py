@@ -12,7 +12,7 @@ from .material import Material, shares
 
 @dataclass(frozen=True, init=False)
 class Phong(Material):
-    """A matt surface with highlights about the mirror direction, on both sides.
+    """A matt surface with highlights around the mirror direction, on both sides.
 
     Phong's model (1975), in the form that conserves energy (Lafortune and Willems, 1994).
 
@@ -26,14 +26,14 @@ class Phong(Material):
     exponent : float or Texture
         Exponent of the cosine, at least 0: highlights get sharper with it.
     ambient : float, 3 floats or Texture, optional
-        Share of ambient light that is reflected, for integrators that know of it; `diffuse` if not given.
+        Share of ambient light that is reflected, for integrators with ambient light; `diffuse` if not given.
 
     Raises
     ------
     ValueError
         If a number is out of range, or the two shares add up to more than 1.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

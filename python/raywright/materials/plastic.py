@@ -14,7 +14,7 @@ from .material import Material, Rough, facets, number_from, rough
 
 @dataclass(frozen=True, init=False)
 class Plastic(Material):
-    """Something matt under a clear coat, smooth or rough; both sides are alike.
+    """A diffuse base under a smooth or rough clear coat; both sides are alike.
 
     Parameters
     ----------
@@ -26,22 +26,22 @@ class Plastic(Material):
         Roughness from 0, smooth, to 1. Its square is the alpha of its facets' distribution, as in glTF. 0 if
         not given.
     alpha : float or Texture, optional
-        Alpha itself, in place of `roughness`.
+        Alpha, in place of `roughness`.
     distribution : {"ggx", "beckmann"}
         Distribution of facet slopes: "ggx" with long tails (Walter et al., "Microfacet Models for Refraction
-        through Rough Surfaces", 2007), or "beckmann", normal (Beckmann and Spizzichino, 1963), which makes
-        highlights without a glow around them.
+        through Rough Surfaces", 2007), or "beckmann", a normal distribution (Beckmann and Spizzichino 1963),
+        whose highlights have no glow around them.
     multiple_scattering : bool
-        True to include multiple scattering between facets. If not, that light is lost, so that a surface is
-        the darker the rougher it is, and masking and shadowing are independent: the model of Walter et al.,
-        which many renderers use.
+        True to include multiple scattering between facets. False omits that light, so rougher surfaces are
+        darker, and treats masking and shadowing as independent: the model of Walter et al., which many
+        renderers use.
 
     Raises
     ------
     ValueError
         If a share or a roughness is outside [0, 1], `ior` is below 1, or there is no such distribution.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -18,28 +18,28 @@ _SHARES = (
 
 @dataclass(frozen=True, init=False)
 class Principled(Material):
-    """The principled model: many looks by a few numbers, from plastic to metal to glass, under a clear coat.
+    """The principled model: a few parameters for plastic, metal and glass, with sheen and a clear coat.
 
     Burley's ("Physically Based Shading at Disney", 2012, and "Extending the Disney BRDF to a BSDF with
-    Integrated Subsurface Scattering", 2015), with lobes that together conserve energy, to 0.2 %: white is
-    white from every direction, whatever the other numbers are. It is a mixture of metal, of a matt base under
-    a dielectric, and of clear dielectric, of GGX's facets. Light scattered between facets is kept, the base
-    gets the light that the facets above it leave, and both get the light that the coat leaves. The base
-    spreads its light over azimuths as Burley's does. All parts are reciprocal.
+    Integrated Subsurface Scattering", 2015), with lobes that together conserve energy, to 0.2 %: a white
+    material reflects all light from every direction, for all other parameters. It mixes metal, a matt base
+    under a dielectric, and clear dielectric, with GGX facets. Multiple scattering between facets is included;
+    the base gets the light that the facets above it transmit, and both get the light that the coat transmits.
+    The base has the azimuthal distribution of Burley's. All parts are reciprocal.
 
     Opaque materials are the same on both sides. Transmissive ones are solids, whose normals point out.
 
     Parameters
     ----------
     base_color : float, 3 floats or Texture
-        Color of diffuse reflection, of metal, and of light that passed two surfaces, in [0, 1].
+        Color of diffuse reflection, of metal, and of light transmitted through two surfaces, in [0, 1].
     roughness : float or Texture
         Roughness from 0, smooth, to 1. Its square is the alpha of the facets, 0.001 at least.
     metallic : float or Texture
         Metalness from 0, none, to 1, metal.
     ior : float, Cauchy or Sellmeier
-        The index of refraction of the dielectric parts, above 0. A dispersive one, as those of `glasses`,
-        spreads transmitted light into its colors; without transmission, it is that of yellow light.
+        The index of refraction of the dielectric parts, above 0. An index by wavelength, such as those of
+        `glasses`, disperses transmitted light; without transmission, its value for yellow light is used.
     transmission : float or Texture
         Share of the dielectric part that is clear, in [0, 1].
     anisotropic : float or Texture
@@ -47,7 +47,7 @@ class Principled(Material):
     specular_tint : float or Texture
         Share of the base color in highlights of the opaque dielectric, in [0, 1].
     sheen, sheen_tint : float or Texture
-        Light along the edges, as of cloth, and the share of the base color in it, in [0, 1].
+        Grazing reflection, as of cloth, and the share of the base color in it, in [0, 1].
     flatness : float or Texture
         Share of subsurface-like, flat diffuse reflection, in [0, 1].
     clearcoat, clearcoat_gloss : float or Texture
@@ -55,17 +55,17 @@ class Principled(Material):
     priority : int
         Priority among overlapping solids, as in `Dielectric`.
     energy_conserving : bool
-        True for a model without gain or loss of energy. If not, it is the model as published, and as in
-        Mitsuba 3: rough facets lose light, as the base keeps the light that the facets above reflect. White
-        matt surfaces give up to 15 % more than they get, and at 85 degrees 45 %, all highlights are stretched
-        and tinted, and transmissive materials only reflect and refract, seen from within.
+        True for a model without gain or loss of energy. False is the model as published, and as in Mitsuba 3:
+        rough facets lose light, while the base also reflects the light that the facets reflect. White matt
+        surfaces then reflect up to 15 % too much, and 45 % at 85 degrees; all highlights are stretched and
+        tinted; and transmissive materials only reflect and refract if seen from within.
 
     Raises
     ------
     ValueError
         If a number is out of range or not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -143,7 +143,7 @@ class PrincipledThin(Material):
     ior : float
         The index of refraction, above 0.
     transmission : float or Texture
-        The share that is clear, in [0, 1]; the rest is matt.
+        Share of clear transmission, in [0, 1]; the rest is matt.
     diffuse_transmission : float or Texture
         Share of the diffuse light that is scattered to the other side, in [0, 1].
     anisotropic, specular_tint, sheen, sheen_tint, flatness : float or Texture
@@ -157,7 +157,7 @@ class PrincipledThin(Material):
     ValueError
         If a number is out of range or not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

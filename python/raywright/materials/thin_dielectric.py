@@ -13,7 +13,7 @@ from .material import Material
 
 @dataclass(frozen=True, init=False)
 class ThinDielectric(Material):
-    """A clear sheet too thin to bend the view: a window, or a flask of smoke.
+    """A clear sheet too thin to shift the view: a window, or a flask of smoke.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class ThinDielectric(Material):
     ValueError
         If `ior` is not greater than 0, or `priority` is out of range.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

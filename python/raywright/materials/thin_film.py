@@ -49,7 +49,7 @@ class _Film(Material):
             If `thickness` is a texture, `eta` or `k` of the base is one or differs by channel, or a number is
             out of range.
         TypeError
-            If something is no number.
+            If an argument is not a number.
 
         See Also
         --------
@@ -87,12 +87,12 @@ class _Film(Material):
 
 @dataclass(frozen=True, init=False)
 class ThinFilm(_Film):
-    """A film on glass, water or metal, of the colours of its thickness: oil on water, a lens's coat, oxide.
+    """A thin film on glass, water or metal, with interference colors: oil on water, a coated lens, oxide.
 
     Light from both faces of the film interferes: Airy's sum over all reflections within it, of both
     polarisations, integrated over the wavelengths of daylight (CIE D65) as the standard observer sees them
-    (CIE 1931), in linear Rec. 709, at each angle. Light comes to it unpolarised. The rest goes through, or
-    into the metal: a film absorbs nothing. Where it has no thickness, its base is bare.
+    (CIE 1931), in linear Rec. 709, at each angle. Incident light is unpolarized. The film absorbs nothing:
+    other light is transmitted, or enters the metal. At a thickness of 0 the base is bare.
 
     A color may be outside the gamut of red, green and blue. Each channel of the reflectance is then cut off
     at 0, and of clear bases at 1, by some thousandths of the light (0.005 for a soap film): no light is
@@ -103,12 +103,12 @@ class ThinFilm(_Film):
     measured, and `eta` and `k` of others the same for all wavelengths of their channel. For clear bases, and
     metals by `eta` and `k`, the reflectance is the integral to within 1e-5; for named metals, tables over
     angle hold it to 5e-5, and if the film's thickness varies, tables over that too, to 3e-4 up to 66 degrees
-    and to 5e-3 near grazing incidence. Films thicker than some 6 µm hardly show any fringes: those of light
-    more than 48 µm behind are left out.
+    and to 5e-3 near grazing incidence. Films thicker than some 6 µm hardly show any fringes: those of path
+    differences above 48 µm are left out.
 
-    On a rough base each facet has the film. Light scattered between facets sees the bare base, and on a clear
-    base so does the light that a facet reflects or refracts into other facets: a rough film keeps all light
-    that a bare base does.
+    On a rough base each facet has the film. Multiple scattering between facets uses the bare base, and so, on
+    a clear base, does light that a facet reflects or refracts into other facets. So a rough film conserves
+    energy as a bare base does.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class ThinFilm(_Film):
     ValueError
         If `thickness` is negative or not finite, or `ior` is not greater than 0.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -178,9 +178,9 @@ class ThinFilm(_Film):
 class SoapFilm(_Film):
     """The skin of a soap bubble: a thin film with air on both sides, which shows interference colors.
 
-    Light goes through it straight, as through a `ThinDielectric`, and it encloses nothing. Its colours are
-    those of a `ThinFilm`: black where it is much thinner than a wave, then white, yellow, magenta, blue and
-    green in turn, paler the thicker it is. A film too thick for colors is a `ThinDielectric`.
+    Light passes straight through it, as through a `ThinDielectric`, and it encloses no medium. Its colours
+    are those of a `ThinFilm`: black where it is much thinner than a wave, then white, yellow, magenta, blue
+    and green in turn, paler the thicker it is. A film too thick for colors is a `ThinDielectric`.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ class SoapFilm(_Film):
     ValueError
         If `thickness` is negative or not finite, or `ior` is not greater than 0.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -14,12 +14,12 @@ from .thin_dielectric import ThinDielectric
 
 @dataclass(frozen=True, init=False)
 class Tinted(Material):
-    """Glass or a pane with a colour at its surface: stained glass, a painted window, a slide.
+    """Glass or a pane with a color at its surface: stained glass, a painted window, a slide.
 
-    Each passage through the surface is dimmed by one factor, and each reflection by another. The
-    `transmittance` of a `Dielectric` belongs to the inside and grows with the length of the way there; this
-    one does not depend on thickness, and may be a texture. Light that passes in and out of a solid crosses
-    its surface twice; that through a pane once.
+    One factor applies to each transmission through the surface, and another to each reflection. The
+    `transmittance` of a `Dielectric` acts over the length of the path inside; this tint does not depend on
+    thickness, and may be a texture. Light that passes in and out of a solid crosses its surface twice; that
+    through a pane once.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Tinted(Material):
     ValueError
         If a share is outside [0, 1] or not finite, or a pane encloses something.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -9,9 +9,9 @@ from .material import Material, material
 
 @dataclass(frozen=True, init=False)
 class TwoSided(Material):
-    """A sheet of one material where its normals point to, and of another behind.
+    """A sheet with one material on the side of its normals, and another behind.
 
-    Both are opaque and without holes; a `Mask` of the whole has them in both.
+    Both are opaque and without holes; for holes in both, put a `Mask` around the `TwoSided`.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class TwoSided(Material):
     ValueError
         If one of them lets light through or has holes, once the scene is compiled.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

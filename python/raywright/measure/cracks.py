@@ -24,19 +24,19 @@ class Topology(Tabular):
     tolerance : float
         Welding distance, in the scene's unit.
     cracks : (K, 2, 3) float64
-        Open edges, by their ends: those that an odd number of faces share.
+        Ends of open edges: those that an odd number of faces share.
     t_junctions : (K, 3) float64
-        Corners of faces within edges of other faces that are open otherwise. Rays pass there only through
-        gaps of rounding.
+        Corners of faces that lie within open edges of other faces. Rays pass there only through gaps by
+        rounding.
     volumes : tuple of float
-        Volume of each body, which is connected faces without an open edge; negative if normals point in, NaN
-        if some of the faces are turned.
+        Volume of each body, a set of connected faces without an open edge; negative if normals point in, NaN
+        if the orientation is inconsistent.
     open_faces : int
         Number of faces that are part of no body.
     inner_faces : int
-        Number of walls within a body, as between two chambers, which enclose nothing more.
+        Number of faces of walls within a body, such as between two chambers.
     turned_edges : int
-        Number of edges along which two faces run the same way, so that one of the two is turned.
+        Number of edges whose two faces have inconsistent orientation.
     duplicate_faces : int
         Number of faces with the same corners as another.
     degenerate_faces : int
@@ -105,9 +105,8 @@ def topology(scene: SceneLike) -> Topology:
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
-        Meshes, and copies of them that stand still, all taken as one. Corners are welded as ``Scene(weld=)``
-        says.
+    scene : Scene, Mesh or anything else that Scene takes
+        Meshes, and static copies of them, joined to one. Corners are welded by ``Scene(weld=)``.
 
     Returns
     -------

@@ -25,15 +25,15 @@ class CrossSection(Tabular):
     Attributes
     ----------
     lines : tuple of (K, 3) float64
-        Polylines, open ones first; the last point of a closed one is the first again. Seen against
-        the plane's normal, closed ones of a body whose normals point out turn anticlockwise, and those of its
-        holes clockwise.
+        Polylines, open ones first; the last point of a closed one is the first again. For a body with outward
+        normals, closed lines are anticlockwise as seen against the plane's normal, and those of holes
+        clockwise.
     closed : tuple of bool
         True for closed lines: all are, if the meshes are closed.
     area : float
         Area covered by closed lines, by `rule`; open ones cover nothing.
     length : float
-        Of all lines.
+        Total length of all lines.
 
     See Also
     --------
@@ -100,25 +100,21 @@ def cross_section(
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
-        Meshes, and copies of them that stand still.
+    scene : Scene, Mesh or anything else that Scene takes
+        Meshes, and static copies of them.
     point : (3,) or (N, 3) array
-        Through which each plane goes.
+        A point on each plane.
     normal : (3,) or (N, 3) array
         Normal of each plane, of any length; broadcast against `point`.
     rule : {"winding", "even-odd"}
-        Area that the closed lines cover: "winding" all that they wind about, counted once, so that
-        overlapping bodies are their union and holes count by the way they turn; it is negative where normals
-        point in. "even-odd" all points that an odd number of lines surround, whichever way they turn, so that
-        overlaps are left out. "winding" what they wind about, once however often, so that overlapping bodies
-        are their union and holes count by the way they turn; it is negative where normals point in.
-        "even-odd" what an odd number of lines surround, whichever way they turn, so that overlaps are left
-        out.
+        Area that the closed lines cover. "winding": points with a nonzero winding number, so overlapping
+        bodies form a union, and holes count by their orientation; the area is negative where normals point
+        in. "even-odd": points inside an odd number of lines, so overlaps are left out.
 
     Returns
     -------
     CrossSection or tuple of CrossSection
-        Of one plane its polylines, none where it passes the meshes by; of (N, 3) planes N of these.
+        The polylines of one plane, empty if it misses the meshes; for N planes a tuple of N.
 
     Raises
     ------
@@ -126,7 +122,7 @@ def cross_section(
         If something in the scene is no mesh or moves, a number is not finite, the normal has no length, the
         planes are no (3,) or (N, 3) arrays, or `rule` is no such rule.
     TypeError
-        If something is no number.
+        If an argument is not a number.
 
     See Also
     --------
@@ -140,12 +136,12 @@ def cross_section(
     its edge, and is right to a few units in the last place of the corners. Vertices are those of the meshes,
     not rounded as a scene may round them.
 
-    Equal corners are one. If lines do not close so, corners that differ by rounding are merged, by
-    ``Scene(weld=)``, and ends of lines at a corner of one face within the edge of another.
+    Equal corners are one. If lines stay open, corners that differ by rounding are merged, as in
+    ``Scene(weld=)``, and ends of lines are joined at T-junctions.
 
-    Lines are joined whichever way the faces turn, and turn as most of their length does; where each face is
-    there from both sides, as if normals pointed out. Faces with the same corners count once. Eight planes or
-    more are cut with a tree of the faces.
+    Lines are joined regardless of the orientation of faces, and take the orientation of most of their length;
+    if each face occurs with both orientations, that of outward normals. Faces with the same corners count
+    once. Eight planes or more are cut with a tree of the faces.
 
     Examples
     --------

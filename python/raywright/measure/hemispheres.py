@@ -26,17 +26,17 @@ _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Estimate(Plotted):
-    """Numbers found by sampling, and how far off they may be; arrays of the points' leading shape.
+    """Sampled values with standard errors; arrays have the leading shape of the points.
 
     Attributes
     ----------
     value : (...) float64
         The estimate; NaN where there is no point.
     standard_error : (...) float64
-        Its standard error: from the spread of 16 independent batches of rays, widened by 15 / 13, the
-        variance of Student's distribution with 15 degrees of freedom, and by one ray. If all agree it is 3 /
-        `rays`: with this share of others, all agree in 5 % of cases (Hanley and Lippman-Hand, "If Nothing
-        Goes Wrong, Is Everything All Right?", 1983).
+        Standard error from 16 independent batches of rays, widened by 15 / 13 (the variance of Student's t
+        with 15 degrees of freedom) and by one ray. If all rays agree, it is 3 / `rays`: if this share of rays
+        differed, all would agree in 5 % of cases (Hanley and Lippman-Hand, "If Nothing Goes Wrong, Is
+        Everything All Right?", 1983).
     rays : int
         Number of rays from each point.
 
@@ -90,40 +90,40 @@ def sky_view(
 ) -> Estimate:
     """Find the sky view factor of points on surfaces: the share of a uniform sky's light that reaches them.
 
-    It is the unobstructed share of directions about the normal, weighted by their cosine; 1 for a plain under
-    an open sky.
+    It is the cosine-weighted share of unobstructed directions of the hemisphere; 1 for a plain under an open
+    sky.
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
+    scene : Scene, Mesh or anything else that Scene takes
         Obstructions.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Points on surfaces. Rays leave hits exactly as in `Hits.spawn_rays`, and plain points by `offset`. The
-        middle of every face if not given, which only meshes have.
+        Points on surfaces. Rays leave hits exactly as in `Hits.spawn_rays`, and plain points by `offset`. By
+        default the centers of all faces; the scene must then consist of meshes.
     normals : (..., 3) array, optional
-        Normals of any length; those of the surfaces if not given, which only hits have.
+        Normals of any length; those of the surfaces if not given, for hits only.
     rays : int
         Directions for each point, at least 16; rounded up to a multiple of 16.
     up : 3 floats, optional
-        The zenith, for points on slopes and walls: below its horizon there is no sky. If not given, all that
-        is not hidden is sky.
+        The zenith, for points on slopes and walls: below its horizon there is no sky. If not given, all
+        unobstructed directions are sky.
     offset : float, optional
-        Distance along the normal from plain points to the rays' origins. If not given, points that lie on a
-        surface to within rounding leave it by the bound on its error, as hits do, and others start where they
-        are. Rounding is 2**-40 of the largest coordinate of the face, or 2**-22 where points or vertices were
+        Distance along the normal from plain points to the rays' origins. If not given, rays from points that
+        lie on a surface to within rounding start beyond the error bound, as for hits; other rays start at the
+        point. Rounding is 2**-40 of the largest coordinate of the face, or 2**-22 if points or vertices were
         rounded to float32.
     seed : int, Generator or SeedSequence
-        Picks the random numbers, 0 to 2**64 - 1.
+        Seed of the random numbers, 0 to 2**64 - 1.
     progress : bool or callable, optional
-        Whether to show a bar on stderr where it takes longer than two seconds, as at a terminal if not given;
-        or a function that is called with the share that is done.
+        True for a progress bar on stderr after two seconds (the default at a terminal); or a function that
+        gets the completed share.
     threads : int, optional
         Number of threads; all cores if not given. The answer does not depend on it.
 
     Returns
     -------
     Estimate
-        Of the leading shape of the points, or (F,) of all faces of all shapes in order.
+        With the leading shape of the points, or (F,) for all faces of all shapes in order.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def sky_view(
         If shapes do not broadcast, a number is out of its range or not finite, a vector has no length, or
         normals are missing.
     TypeError
-        If something is of the wrong type.
+        If an argument has the wrong type.
 
     See Also
     --------
@@ -142,7 +142,7 @@ def sky_view(
     -----
     Each batch of directions is a lattice of the golden ratio on the square, moved at random (Cranley and
     Patterson 1976), and mapped to the disk evenly (Shirley and Chiu 1997) and up to the hemisphere (Malley's
-    method). Batches are independent, each an unbiased estimate, and their mean errs less than that of as many
+    method). Batches are independent and unbiased, and their mean has a smaller error than that of as many
     independent rays.
 
     Examples
@@ -176,10 +176,9 @@ def ambient_visibility(
     progress: BuildProgress | None = None,
     threads: int | None = None,
 ) -> Estimate:
-    """Find the ambient visibility of points on surfaces: 1 less their ambient occlusion.
+    """Compute the ambient visibility of points on surfaces: 1 minus ambient occlusion.
 
-    It is the share of directions about the normal, weighted by their cosine, without an obstruction within a
-    radius.
+    It is the cosine-weighted share of directions of the hemisphere without an obstruction within a radius.
 
     Parameters
     ----------
@@ -191,7 +190,7 @@ def ambient_visibility(
     Returns
     -------
     Estimate
-        Of the leading shape of the points, or (F,) of all faces of all shapes in order.
+        With the leading shape of the points, or (F,) for all faces of all shapes in order.
 
     Raises
     ------

@@ -32,11 +32,11 @@ def plot(
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
-        Meshes to draw, copies that stand still included.
+    scene : Scene, Mesh or anything else that Scene takes
+        Meshes to draw, including static copies.
     values : (...) array of real numbers or bool
-        One for each point; without points one for each face, or one for each vertex, of all meshes in order.
-        NaN is drawn in grey, and infinity in the color of the nearest end.
+        A value for each point; without points, for each face or each vertex of all meshes in order. NaN is
+        drawn in grey, and infinity in the color of the nearest end.
     points : Hits, ClosestPoints or (..., 3) array, optional
         Places of the values. The meshes are grey below them, unless the points are their vertices.
     ax : matplotlib.axes.Axes, str or path, optional

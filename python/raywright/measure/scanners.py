@@ -44,12 +44,12 @@ class _Scanner:
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningLidar(_Scanner):
-    """A scanner whose beams, one above the other, turn about the vertical.
+    """A scanner with beams one above the other that rotate about the vertical.
 
     Parameters
     ----------
     elevations : (R,) array
-        Elevations of the beams above the horizon, in degrees: a row each, in their order.
+        Elevations of the beams above the horizon, in degrees, one for each row.
     columns : int
         Number of columns of a turn.
     start, stop : float
@@ -58,25 +58,25 @@ class SpinningLidar(_Scanner):
     position : 3 floats
         Position of the scanner.
     forward, up : 3 floats
-        Its azimuth 0 and its vertical, y if not given as everywhere in `raywright.measure`; only the
-        component of `forward` at right angles to `up` counts.
+        Direction of azimuth 0, and the vertical, by default y; only the component of `forward` at right
+        angles to `up` counts.
     min_range, max_range : float
-        Limits of the measured range, both included. Nearer surfaces are not measured, and hide surfaces
+        Limits of the measured range, both included. Nearer surfaces are not measured, but hide surfaces
         behind them.
     divergence : float
-        The full angle of a beam's cone, in degrees; 0 for one that is a line.
+        Full angle of a beam's cone, in degrees; 0 for a line.
     rays : int
         Number of rays for a beam with a divergence.
     resolution : float
-        Minimum distance between surfaces, in the scene's unit, for a beam to return from each: the full width
-        at half maximum of its pulse, in range.
+        Minimum distance between two surfaces with separate returns: the full width at half maximum of the
+        pulse, as a length in the scene's unit.
 
     Raises
     ------
     ValueError
         If a number is out of its range or not finite, `forward` is along `up`, or there are no beams.
     TypeError
-        If something is no number.
+        If an argument is not a number.
 
     See Also
     --------
@@ -135,7 +135,7 @@ class SpinningLidar(_Scanner):
 
 @dataclass(frozen=True, kw_only=True)
 class RasterLidar(_Scanner):
-    """A scanner whose beam goes over a field line by line, in even steps of both angles.
+    """A scanner whose beam scans a rectangular field line by line, in even steps of both angles.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ class RasterLidar(_Scanner):
     ValueError
         If a number is out of its range or not finite, or `forward` is along `up`.
     TypeError
-        If something is no number.
+        If an argument is not a number.
 
     See Also
     --------

@@ -42,12 +42,12 @@ class LidarScan(Tabular):
     range : (K,) float64
         Measured range: with its noise, from the scanner's `min_range` to its `max_range`.
     position : (K, 3) float64
-        Position by the scanner: on the middle of the beam, at the range.
+        Measured position: on the axis of the beam, at the range.
     incidence : (K,) float64
         Angle between the beam and the normal of the surface, in degrees, 0 to 90; the mean over the
         footprint.
     strength : (K,) float64
-        Share of the beam that came to the surface there, 0 to 1.
+        Share of the beam that reached the surface there, 0 to 1.
     shape_id, primitive_id : (K,) int32
         First shape and primitive of the return, as in `Hits`.
     shape : tuple of int
@@ -156,7 +156,7 @@ class LidarScan(Tabular):
         return plot((), getattr(self, name), self.position, ax, name, up, cmap)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each return; its place as x, y and z.
+        """Return flat arrays by name, an entry for each return, with its position as x, y and z.
 
         Returns
         -------
@@ -198,22 +198,22 @@ def lidar(
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
+    scene : Scene, Mesh or anything else that Scene takes
         The scanned scene.
     scanner : SpinningLidar or RasterLidar
         Scanner with its position and beams.
     returns : {"all", "first", "last", "strongest"}
-        Returns of a beam to keep. A beam that does not widen has one at most.
+        Returns of a beam to keep. A beam without divergence has at most one.
     range_sigma, range_sigma_share : float
         Absolute and relative standard deviation of the range; they add in quadrature.
     dropout : float
-        The share of returns that are lost wherever they come from, 0 to 1.
+        Share of returns that are lost at any range, 0 to 1.
     fading_range : float, optional
-        Returns are kept with a probability of exp(-(range / fading_range)^2), all if not given.
+        Returns are kept with the probability exp(-(range / fading_range)^2); all if not given.
     incidence_power : float
-        Returns are kept with a probability of the cosine of their incidence to this power, all at 0.
+        Returns are kept with the probability cos(incidence)^`incidence_power`; 0 keeps all.
     seed : int, Generator or SeedSequence
-        Picks the random numbers, 0 to 2**64 - 1.
+        Seed of the random numbers, 0 to 2**64 - 1.
     progress : bool or callable, optional
         As for `sky_view`.
     threads : int, optional
@@ -238,17 +238,17 @@ def lidar(
 
     Notes
     -----
-    A beam with a divergence is many rays, spread evenly over its disk, each for the part of it around. The
-    beam returns a waveform: the sum of a normal distribution for each ray, as wide as the scanner's pulse,
-    whose full width at half maximum is its `resolution`, and as the range varies over the ray's part of the
-    surface. Each peak of it is a return, if the waveform falls by 5 % at least before the next (Wagner,
-    Ullrich, Ducic, Melzer and Studnicka, "Gaussian Decomposition and Calibration of a Novel Small-Footprint
-    Full-Waveform Digitising Airborne Laser Scanner", 2006); its range is the mean over the rays that make it
-    up. Ground at a grazing angle thus returns once, though it stretches over many resolutions.
+    A beam with a divergence is many rays, spread evenly over its disk, each for the part of the disk around
+    it. The beam returns a waveform: the sum of a normal distribution for each ray, as wide as the scanner's
+    pulse, with a full width at half maximum of `resolution`, plus the variation of the range over the ray's
+    part of the surface. Each peak is a return if the waveform falls by at least 5 % before the next one
+    (Wagner, Ullrich, Ducic, Melzer and Studnicka, "Gaussian Decomposition and Calibration of a Novel
+    Small-Footprint Full-Waveform Digitising Airborne Laser Scanner", 2006); its range is the mean over the
+    contributing rays. Thus ground at a grazing angle returns once, even over many resolutions.
 
-    Ranges are true before noise; losses are decided of true ranges. Noise that leads out of the scanner's
-    limits ends at these. Random numbers belong to beam and return, so that a scan is the same however it is
-    cut into batches, and adding one kind of noise changes no other.
+    Losses depend on true ranges, before noise. Noisy ranges are clamped to the scanner's limits. Random
+    numbers depend on beam and return only, so a scan does not depend on batches, and one kind of noise does
+    not change another.
 
     Examples
     --------

@@ -22,9 +22,9 @@ class LineOfSight(Plotted):
     Attributes
     ----------
     visible : (...) bool
-        True if nothing stands between.
+        True if nothing is between the points.
     obstruction : Hits
-        First obstruction, from `a` on; `t` is its share of the way.
+        First obstruction from `a`; `t` is the fraction of the segment from `a` to `b`.
     distance : (...) float64
         Distance from one point to the other.
 
@@ -47,7 +47,7 @@ class LineOfSight(Plotted):
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Return flat arrays by name, an entry for each pair, in C order.
 
-        Of the obstruction there are its share of the way, ``t``, its shape and its face.
+        Columns of the obstruction: ``t``, shape and face.
 
         Returns
         -------
@@ -77,22 +77,21 @@ def line_of_sight(
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
+    scene : Scene, Mesh or anything else that Scene takes
         Obstructions.
     a, b : (..., 3) arrays
         The points, broadcast against each other.
     margin : float, optional
-        The share of the way at either end that does not count, at least 0 and less than 0.5. With 0, both
-        points count. If not given, points that lie on a surface to within rounding are not hidden by it
-        there: the way leaves it by the bound on its error, as in `Hits.spawn_rays`. All else counts, however
-        near.
+        Share of the segment to ignore at either end, at least 0 and less than 0.5. With 0, surfaces at both
+        points count. If not given, a surface does not hide a point that lies on it to within rounding: the
+        ray starts beyond the error bound, as in `Hits.spawn_rays`. All other surfaces count, however near.
     threads : int, optional
         Number of threads; all cores if not given. The answer does not depend on it.
 
     Returns
     -------
     LineOfSight
-        Of the shape that both broadcast to. A point sees itself.
+        With the shape that both broadcast to. A point sees itself.
 
     Raises
     ------

@@ -28,13 +28,13 @@ class SolarExposure(Plotted):
     Attributes
     ----------
     exposure : (...) float64
-        The weights of the moments at which the sun reaches the point, each times the cosine of the sun to the
-        normal, summed: for direct normal irradiance times hours, the irradiation of the surface.
+        Sum over the moments at which the sun reaches the point: weight times the cosine between sun and
+        normal. With direct normal irradiance times hours as weights, it is the irradiation of the surface.
     sunlit : (...) float64
-        The weights of these moments, summed: with a weight of 1 their number, with the hours between them the
-        hours of sun.
+        Sum of the weights of these moments: their number with a weight of 1, hours of sun with the hours
+        between moments as weights.
     day : float
-        The weights of all moments at which the sun is above the horizon, summed.
+        Sum of the weights of all moments with the sun above the horizon.
 
     See Also
     --------
@@ -80,7 +80,7 @@ def sun_directions(
     up: ArrayLike = (0.0, 1.0, 0.0),
     north: ArrayLike = (0.0, 0.0, -1.0),
 ) -> Floats:
-    """Return the direction to the sun at each of some times, seen from a place.
+    """Return the direction to the sun at each time, from a place on Earth.
 
     Parameters
     ----------
@@ -136,20 +136,20 @@ def solar_exposure(
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
+    scene : Scene, Mesh or anything else that Scene takes
         Shapes that cast shadows.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Points on surfaces. Rays leave hits exactly as in `Hits.spawn_rays`, and plain points by `offset`. The
-        middle of every face if not given, which only meshes have.
+        Points on surfaces. Rays leave hits exactly as in `Hits.spawn_rays`, and plain points by `offset`. By
+        default the centers of all faces; the scene must then consist of meshes.
     normals : (..., 3) array, optional
-        Normals of any length; those of the surfaces if not given, which only hits have.
+        Normals of any length; those of the surfaces if not given, for hits only.
     sun : (T, 3) array, optional
         Directions to the sun, of any length; or `times` with `latitude` and `longitude`, as `sun_directions`
         takes them.
     weights : float or (T,) array, optional
         Weight of each moment, such as its share of the year or the direct normal irradiance; 1 if not given.
     up, north : 3 floats
-        The zenith, below whose horizon the sun does not count, and the north.
+        Zenith and north. The sun does not count below the horizon of the zenith.
     offset : float, optional
         Distance along the normal from plain points to the rays' origins, as for `sky_view`.
     progress : bool or callable, optional
@@ -160,7 +160,7 @@ def solar_exposure(
     Returns
     -------
     SolarExposure
-        Of the leading shape of the points, or (F,) of all faces of all shapes in order.
+        With the leading shape of the points, or (F,) for all faces of all shapes in order.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def solar_exposure(
         If neither the sun nor times and place are given, or both; if shapes do not fit, a number is not
         finite, a vector has no length, or normals are missing; and as `sun_directions` does.
     TypeError
-        If something is of the wrong type.
+        If an argument has the wrong type.
 
     See Also
     --------
@@ -177,8 +177,8 @@ def solar_exposure(
 
     Notes
     -----
-    The sun counts as a point. A hidden center hides all of it, so that edges of shadows, half a degree wide,
-    are sharp. Nothing is sampled.
+    The sun is treated as a point, its center, so shadows have sharp edges instead of half a degree of
+    penumbra. Nothing is sampled.
 
     Examples
     --------

@@ -36,16 +36,16 @@ def thickness(
 
     Parameters
     ----------
-    scene : Scene, Mesh or anything else that a Scene is made of
+    scene : Scene, Mesh or anything else that Scene takes
         The body; normals point out of it.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Points on the surface. The middle of every face if not given, which only meshes have.
+        Points on the surface. By default the centers of all faces; the scene must then consist of meshes.
     normals : (..., 3) array, optional
-        Outward normals, of any length; those of the surfaces if not given, which only hits have.
+        Outward normals, of any length; those of the surfaces if not given, for hits only.
     method : {"ray", "sphere"}
-        "ray" goes straight in, against the normal, to where the surface is met next. "sphere" is the diameter
-        of the largest ball inside that touches the surface at the point, which is never more, does not depend
-        on how the far side is tilted, and needs closest points.
+        "ray" is the distance along the inward normal to the next surface. "sphere" is the diameter of the
+        largest ball inside that touches the surface at the point; it is never larger, does not depend on the
+        tilt of the far side, and needs closest points.
     offset : float, optional
         Distance along the normal from plain points to the rays' origins, as for `sky_view`.
     progress : bool or callable, optional
@@ -57,7 +57,7 @@ def thickness(
     -------
     (...) float64
         In the scene's unit, of the leading shape of the points, or (F,) of all faces of all shapes in order;
-        inf where there is no other side, NaN where there is no point.
+        inf without an opposite surface, NaN without a point.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def thickness(
         `method` is no such method; without points, if something in the scene is no mesh; for "sphere", if
         something in it has no closest points.
     TypeError
-        If something is of the wrong type.
+        If an argument has the wrong type.
 
     See Also
     --------
@@ -74,11 +74,11 @@ def thickness(
 
     Notes
     -----
-    The ball shrinks from the one that the ray allows until nothing is nearer to its centre than the point
-    (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal Field",
-    2012), at a convex edge to nothing. Among meshes a tree of boxes and slabs finds the nearest obstacle, to
-    1e-6 of the ball; for other shapes, closest points do. Rays and balls are those of the actual surface: if
-    a mesh stands for something round, its facets are measured.
+    The ball of "sphere" starts with the diameter of "ray" and shrinks until nothing is nearer to its center
+    than the point (Ma, Bae and Choi, "3D Medial Axis Point Approximation Using Nearest Neighbors and the
+    Normal Field", 2012), at a convex edge to nothing. Among meshes a tree of boxes and slabs finds the
+    nearest obstacle, to 1e-6 of the ball; for other shapes, closest points do. Both measure the actual
+    surface: for a mesh of a round shape, its facets.
 
     Examples
     --------

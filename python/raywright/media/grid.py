@@ -30,14 +30,14 @@ class GridMedium(Medium):
     """A medium whose density is given on a regular grid: smoke, fire, a cloud.
 
     Its coefficients are multiplied by the density, which is interpolated linearly along each axis. Outside of
-    the grid there is nothing. The grid lies in the space that its shape is described in; in an `Instance` it
-    goes where the copy goes, and lengths are those of the world there too.
+    the grid the density is 0. The grid is in the same space as its shape; in an `Instance` it moves with the
+    copy, and lengths are in world units.
 
     Parameters
     ----------
     density : (X, Y, Z) or (X, Y, Z, 3) array, or SparseGrid
         Numbers that are finite and at least 0, for all colours or for each of red, green and blue, kept as
-        read-only float32; those that are so already are not copied. The first axis is x.
+        read-only float32; such arrays are not copied. The first axis is x.
     bounds : (2, 3) array, optional
         Least and greatest corner of the grid; the unit cube if not given.
     transform : (4, 4) array, optional
@@ -47,23 +47,24 @@ class GridMedium(Medium):
     phase : HenyeyGreenstein, Rayleigh or Isotropic
         Phase function.
     emission : float, 3 floats, Spectrum, array of (X', Y', Z') or (X', Y', Z', 3), or SparseGrid
-        Emitted radiance per unit of length: numbers where the density is 1, or an array, over the same
-        bounds, whatever the density.
+        Emitted radiance per unit of length. Numbers are for a density of 1; an array, over the same bounds,
+        is independent of the density.
     at : {"corners", "centers"}
-        Place of the numbers. "corners": those of the outermost lie on the faces of the bounds. "centers":
-        each is in the middle of a cell, and the same up to the face, as OpenVDB's, pbrt's and Mitsuba's are.
+        Positions of the numbers. "corners": the outermost numbers lie on the faces of the bounds. "centers":
+        each number is in the middle of a cell, and constant from there to the faces of the bounds, as in
+        OpenVDB, pbrt and Mitsuba.
     extinction : float, 3 floats or Spectrum
         With `albedo`, and in place of `absorption` and `scattering`: the share of light that is absorbed or
         scattered per unit of length where the density is 1.
     albedo : (X', Y', Z') or (X', Y', Z', 3) array, or SparseGrid, optional
-        The share of that which is scattered, at most 1, over the same bounds.
+        Scattered share of the extinction, at most 1, over the same bounds.
     temperature : (X', Y', Z') array or SparseGrid, optional
-        Kelvin, over the same bounds. Hot points give off light as a black body does, in proportion to their
-        absorption (Kirchhoff 1860); points below 500 K give off none.
+        Kelvin, over the same bounds. Hot points emit like a black body, in proportion to their absorption
+        (Kirchhoff 1860); points below 500 K emit nothing.
     brightness : float
-        The radiance of black bodies at the wavelength at which they have most of it, as pbrt's ``Lescale``: 1
-        is as bright as light of `Spectrum` with a value of 1. Its visible part rises with the temperature up
-        to about that of the sun, since cooler bodies have most of it in the infrared.
+        Radiance of a black body at the wavelength of its maximum, as pbrt's ``Lescale``; 1 is the radiance of
+        a `Spectrum` with a value of 1. The maximum of a cool body is in the infrared, so the visible part
+        rises with the temperature, up to about that of the sun.
 
     Raises
     ------
@@ -71,7 +72,7 @@ class GridMedium(Medium):
         If something is negative, not finite, or of another shape, a transform has no inverse, or an albedo
         exceeds 1 or does not come with an extinction alone.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -16,8 +16,8 @@ from .phases import Isotropic, Phase, phase
 class Homogeneous(Medium):
     """A homogeneous medium: the same everywhere.
 
-    Its transmittance is exp(-(absorption + scattering) · length) (Beer and Lambert). Lengths are those of the
-    world, in instances too.
+    Its transmittance is exp(-(absorption + scattering) · length) (Beer and Lambert). Lengths are in world
+    units, also in instances.
 
     Parameters
     ----------
@@ -27,15 +27,14 @@ class Homogeneous(Medium):
     phase : HenyeyGreenstein, Rayleigh or Isotropic
         Phase function.
     emission : float, 3 floats or Spectrum
-        The radiance that it gives off by itself, per unit of length, at least 0. A deep medium has the
-        radiance emission / absorption.
+        Emitted radiance per unit of length, at least 0. A deep medium has the radiance emission / absorption.
 
     Raises
     ------
     ValueError
-        If a number is negative or not finite, or there are not 1 or 3 of them.
+        If a number is negative or not finite, or there are neither 1 nor 3 of them.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------

@@ -10,7 +10,7 @@ from ..arrays import number
 
 @dataclass(frozen=True)
 class Isotropic:
-    """The isotropic phase function: the same into every direction.
+    """The isotropic phase function: the same in all directions.
 
     See Also
     --------
@@ -49,15 +49,15 @@ class HenyeyGreenstein:
     Parameters
     ----------
     g : float
-        Mean cosine, between -1 and 1, both excluded: above 0 light is mostly scattered forward, as in clouds
-        (about 0.85) and milk (about 0.9); below 0 mostly back; at 0 everywhere alike.
+        Mean cosine, between -1 and 1, both excluded: above 0 scattering is mostly forward, as in clouds
+        (about 0.85) and milk (about 0.9); below 0 mostly backward; at 0 isotropic.
 
     Raises
     ------
     ValueError
         If it is not between -1 and 1.
     TypeError
-        If it is no number.
+        If it is not a number.
 
     See Also
     --------

@@ -52,7 +52,7 @@ def load(path: str | PathLike[str], weld: Weld = "auto") -> tuple[Mesh, ...]:
     Warns
     -----
     RuntimeWarning
-        Once of each kind of thing in the file that is not shown as it says.
+        Once for each kind of feature in the file that is ignored or approximated.
     """
     path = Path(path)
     if not path.exists():

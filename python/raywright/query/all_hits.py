@@ -23,24 +23,24 @@ _MISSES = {"t": np.inf, "shape_id": -1, "primitive_id": -1, "uv": 0.0, "instance
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class AllHits(SurfacePoints):
-    """Every hit of each ray, one after the other: by ray, then `t`, then (shape_id, primitive_id).
+    """All hits of all rays, in order of ray, then `t`, then (shape_id, primitive_id).
 
-    There are K hits of N rays in all, and those of ray i, counted along the rays in C order, are from
+    There are K hits of N rays in all. Those of ray i, with rays counted in C order, are from
     ``ray_splits[i]`` to ``ray_splits[i + 1]``. Arrays of integers are read-only, as in `Hits`.
 
     Attributes
     ----------
     ray_splits : (N + 1,) int64
-        Start of each ray's hits, and at the end their total number.
+        Index of each ray's first hit, and at the end the total number of hits.
     t : (K,) float64
-        Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``.
+        Distance in units of the direction's length: the hit is at ``origin + t * direction``.
     shape_id : (K,) int32
         Index in ``scene.shapes``.
     primitive_id : (K,) int32
-        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
+        Face of that shape, 0 for a curved shape; on an instance, a number for `Instance.locate`.
     uv : (K, 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a curved shape, its own u and v.
     shape : tuple of int
         Leading shape of the rays.
 

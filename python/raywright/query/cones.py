@@ -27,13 +27,13 @@ ConeArguments: TypeAlias = tuple[
 class ConeFaces(Tabular):
     """Faces touched by each cone, in one list: by cone, then distance, then (shape_id, primitive_id).
 
-    There are K touches of N cones in all, and those of cone i, counted along the cones in C order, are from
+    There are K faces for N cones in all. Those of cone i, with cones counted in C order, are from
     ``cone_splits[i]`` to ``cone_splits[i + 1]``. All arrays are read-only.
 
     Attributes
     ----------
     cone_splits : (N + 1,) int64
-        Start of each cone's touches, and at the end their total number.
+        Index of each cone's first face, and at the end the total number of faces.
     shape_id : (K,) int32
         Index in ``scene.shapes``.
     primitive_id : (K,) int32
@@ -73,7 +73,7 @@ class ConeFaces(Tabular):
         return sealed(np.diff(self.cone_splits).reshape(self.shape))
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return flat arrays by name, an entry for each touch, with the cone that it is of.
+        """Return flat arrays by name, an entry for each face, with the index of its cone.
 
         Returns
         -------

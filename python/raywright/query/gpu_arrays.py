@@ -36,61 +36,61 @@ INSTANCE = np.dtype(
 class GpuArrays:
     """A scene's binary tree and its triangles as arrays without pointers: `Scene.gpu_arrays` makes it.
 
-    The arrays are read-only, little-endian and without gaps, so that their bytes can go to a graphics
-    processor as they are. All lengths are in box units: a point p of the scene is at ``(p - centre) * scale``
-    there, between -2 and 2.
+    The arrays are read-only, little-endian and without gaps, so a graphics processor can use their bytes
+    directly. All lengths are in box units: a point p of the scene has the coordinates ``(p - center) *
+    scale``, between -2 and 2.
 
     Attributes
     ----------
     nodes : (K,) structured, 32 bytes each
-        The tree, each node before all that is below it. Its fields, at these bytes:
+        The tree in depth-first order. Fields and bytes:
 
         - ``lower``, 0 to 11: three float32, the least corner of the box, rounded down;
-        - ``index``, 12 to 15: uint32, of a leaf the first of its entries in `triangles`, of an inner node the
-          number of the node that comes after all below it, which of the last is `own`;
+        - ``index``, 12 to 15: uint32; for a leaf, the index of its first entry in `triangles`; for an inner
+          node, the index of the first node after its subtree, which may be `own`;
         - ``upper``, 16 to 27: three float32, the greatest corner of the box, rounded up;
-        - ``count``, 28 to 31: uint32, how many entries a leaf has, 0 for an inner node.
+        - ``count``, 28 to 31: uint32, the number of entries of a leaf, 0 for an inner node.
 
-        The first child of an inner node i is i + 1, and the second is the node after all that is below the
-        first: i + 2 if that is a leaf, and its ``index`` if not. A walk needs no stack: from a node whose box
-        is hit it goes on to i + 1, from another to i + 1 if it is a leaf and to its ``index`` if not, and it
+        The first child of an inner node i is i + 1. The second child is the node after the subtree of the
+        first: i + 2 if that is a leaf, otherwise its ``index``. Traversal needs no stack: after a node whose
+        box is hit comes i + 1, after a missed leaf i + 1, and after a missed inner node its ``index``; it
         ends at `own`.
     triangles : (M,) structured, 48 bytes each
         Entries of the leaves, leaf after leaf; a split face may have several entries. Its fields:
 
-        - ``corner``, 0 to 11: three float32, the corner from which the shortest edge goes, as it is wound;
+        - ``corner``, 0 to 11: three float32, the corner at which the shortest edge starts, in winding order;
         - ``primitive``, 12 to 15: uint32, the number among all primitives of the scene; see `first`;
-        - ``edge``, 16 to 27: three float32, from there to the next corner;
+        - ``edge``, 16 to 27: three float32, from `corner` to the next corner;
         - ``largest``, 28 to 31: float32, the largest coordinate of both edges, in magnitude;
-        - ``other``, 32 to 43: three float32, from there to the one before;
-        - ``instance``, 44 to 47: uint32, of a copy of an `Instance` one more than its place in `instances`,
-          of anything else 0.
+        - ``other``, 32 to 43: three float32, from `corner` to the previous corner;
+        - ``instance``, 44 to 47: uint32, one plus the index in `instances` for a copy of an `Instance`, 0
+          otherwise.
 
-        Differences are taken in float64 and rounded once. A primitive that is no triangle, a sphere or a
-        copy, has a ``largest`` of -1, and its box from ``corner`` to ``edge``.
+        Differences are computed in float64 and rounded once. A primitive other than a triangle, such as a
+        sphere or a copy, has a ``largest`` of -1, and its box from ``corner`` to ``edge``.
     instances : (I,) structured, 64 bytes each
-        Copies that stand still. The shapes that are copied have a tree of their own behind the scene's, in
-        the same arrays, in box units and with primitive numbers of their own. Their fields:
+        Static copies. The copied shapes have their own tree after the scene's, in the same arrays, with their
+        own box units and primitive numbers. Fields:
 
         - ``matrix``, 0 to 47: (3, 4) float32, by rows, from the box units around the copy to those inside: a
           ray is at ``matrix[:, :3] @ o + matrix[:, 3]`` there and goes along ``matrix[:, :3] @ d``, with the
           same t;
         - ``node``, 48 to 51: uint32, the root of the tree inside;
-        - ``end``, 52 to 55: uint32, the node after the last of that tree, where a walk of it ends;
+        - ``end``, 52 to 55: uint32, the first node after that tree, where its traversal ends;
         - ``primitive``, 56 to 59: uint32, the copy's own number;
         - ``reserved``, 60 to 63: uint32, 0.
     own : int
-        Number of `nodes` of the scene's own tree: a walk of it ends there.
+        Number of nodes of the scene's own tree, where its traversal ends.
     unbounded : (U,) uint32
-        Infinite primitives, as a `Plane`: they are in no leaf.
+        Infinite primitives, such as a `Plane`, which are in no leaf.
     first : (S + 1,) int64
-        The number of the first primitive of each of the scene's shapes, and how many there are in all.
+        Index of the first primitive of each of the scene's shapes, and the number of all primitives.
     center : (3,) float64
-        The middle of box units, in the scene's own.
+        Origin of the box units, in the scene's coordinates.
     scale : float
         Factor from the scene's units to box units: a power of two.
     depth : int
-        The longest way from the root to a leaf, in steps: a stack needs so many entries.
+        Depth of the tree: the number of entries that a stack needs.
 
     See Also
     --------

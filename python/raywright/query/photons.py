@@ -18,19 +18,19 @@ _TOLD = 64
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Photons:
-    """Light where it comes to surfaces and is scattered by media: K photons, in order along each path.
+    """Photons at surfaces and at scattering events in media: K of them, in order along each path.
 
-    ``photons[mask]`` selects some of them; emitted, escaped and absorbed flux stay those of all. All arrays
-    are read-only.
+    ``photons[mask]`` selects some of them; emitted, escaped and absorbed flux stay those of all photons. All
+    arrays are read-only.
 
     Attributes
     ----------
     positions : (K, 3) float64
         Positions on surfaces, or of absorption or scattering in a medium.
     directions : (K, 3) float64
-        Unit, along which they came.
+        Unit directions of travel on arrival.
     normals : (K, 3) float64
-        Unit geometric normals there, on the side that they came to; 0 in a medium.
+        Unit geometric normals on the side of arrival; 0 in a medium.
     powers : (K, 3) float64
         Flux of each photon, W: power over area is irradiance, and power over volume and extinction is
         fluence.
@@ -39,15 +39,15 @@ class Photons:
     path : (K,) int64
         Index of the path, from 0 on.
     bounces : (K,) int64
-        Number of scattering events before.
+        Number of previous scattering events.
     specular : (K,) uint64
-        Bits of the specular bounces, by mirrors, glass or gloss: the first 64, the lowest bit for the first.
+        Bits of specular bounces, by mirrors, glass or gloss: the lowest bit for the first bounce, up to 64.
     in_medium : (K,) uint64
-        Bits of the bounces in media, likewise.
+        Bits of the bounces in media, in the same order.
     emitted, escaped, absorbed : tuple of 3 floats
-        Flux of all emitted light, of light that leaves the scene, and of light absorbed by media. If red,
-        green and blue are dimmed alike, each path's balance is exact; otherwise, or if a medium without
-        scattering varies from place to place, the balance holds on average.
+        Flux of all emitted light, of light that leaves the scene, and of light absorbed by media. For gray
+        materials and media, the balance of each path is exact; otherwise, or with a heterogeneous medium
+        without scattering, it holds on average.
 
     See Also
     --------

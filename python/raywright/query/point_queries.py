@@ -39,8 +39,8 @@ class PointQueries(Compilable):
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         shapes : (S,) bool array, str or sequence of str, optional
-            Shapes that count, one bool for each of ``scene.shapes`` or their names: as in a scene of these
-            alone. An `Instance` counts as a whole.
+            Shapes to test: a bool for each of ``scene.shapes``, or names. The result is that of a scene of
+            these shapes only. An `Instance` counts as a whole.
 
         Returns
         -------
@@ -117,11 +117,11 @@ class PointQueries(Compilable):
         points : (..., 3) array
             C-contiguous float32 and float64 are read without a copy.
         max_distance : float or (...) array
-            Maximum distance, inclusive; the less, the faster.
+            Maximum distance, inclusive; smaller values are faster.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         shapes : (S,) bool array, str or sequence of str, optional
-            Shapes that count, as for `contains`.
+            Shapes to test, as for `contains`.
 
         Returns
         -------
@@ -172,8 +172,8 @@ class PointQueries(Compilable):
     ) -> NDArray[np.float64]:
         """Compute the signed distance of each point to the surface: negative inside, positive outside.
 
-        Points are inside where `contains` finds them inside, with its warnings. The nearest surface may be of
-        a shape that is open. (Open3D and most of CAD have this sign, trimesh has the other.)
+        Points are inside where `contains` finds them inside, with its warnings. The nearest surface may
+        belong to an open shape. (Open3D and most CAD use this sign, trimesh the opposite one.)
 
         Parameters
         ----------
@@ -182,13 +182,13 @@ class PointQueries(Compilable):
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         shapes : (S,) bool array, str or sequence of str, optional
-            Shapes that count, as for `contains`.
+            Shapes to test, as for `contains`.
 
         Returns
         -------
         (...) float64
-            With the leading shape of the points; inf for points that are NaN or infinite, and for all if no
-            shape counts. On shapes that are no meshes it is 0 to within the rounding of the point.
+            With the leading shape of the points; inf for points that are NaN or infinite, and for all points
+            if there are no shapes to test. On curved shapes it is 0 to within the rounding of the point.
 
         Raises
         ------

@@ -35,23 +35,21 @@ class Previews(Compilable):
         """Draw the scene by one ray and one shadow ray a pixel: a picture for frames in real time.
 
         A pixel is the albedo of the surface seen at its center times the cosine between the geometric normal,
-        on the side that is seen, and the light (Lambert 1760), 0 in shadow. All stages of a tile of pixels
-        follow upon each other in the core, so a frame takes as little memory as its array.
+        on the side that is seen, and the light (Lambert 1760), 0 in shadow. The core completes each tile of
+        pixels before the next, so a frame takes no more memory than its array.
 
         Parameters
         ----------
         camera : Camera or another kind
-            Whose picture it is, of any kind: a `ThinLens` as a pinhole, and a camera that moves as its
-            shutter opens.
+            Camera of any kind; a `ThinLens` is taken as a pinhole, and a moving camera as its shutter opens.
         light : "headlight", 3 floats, DirectionalLight or PointLight
-            The light: at the eye, where it throws no shadows that are seen; 3 floats are the direction
-            towards the sun, of any length but 0; of a light of the library only its direction or position
-            counts. Lights of the scene do not.
+            The only light; those of the scene are ignored. "headlight" is at the camera and casts no visible
+            shadows; 3 floats are the direction towards a sun, of any length but 0; of a light object, only
+            direction or position count.
         out : (height, width, 3) array of uint8 or float32, optional
             Array that the picture is written to, C-contiguous; it is returned.
         dtype : uint8 or float32, optional
-            Type of a new array, uint8 if not given. uint8 has the curve of sRGB, as screens want it; float32
-            is linear.
+            Type of a new array, uint8 if not given. uint8 is sRGB, for display; float32 is linear.
         ambient : float
             The share of the light, from 0 to 1, that reaches every point: the picture is
             ``albedo * (ambient + (1 - ambient) * cosine)``.

@@ -13,12 +13,12 @@ from .rays import spread
 
 
 class SpawnedRays(NamedTuple):
-    """Rays that leave surfaces, as a scene takes them: ``scene.intersect(*rays)``.
+    """Rays that leave surfaces, as arguments of queries: ``scene.intersect(*rays)``.
 
     Attributes
     ----------
     origins : (..., 3) float64
-        Start points, offset from the surface to the side of the direction; NaN where there is no surface.
+        Origins, offset from the surface to the side of the direction; NaN for misses.
     directions : (..., 3) float64 or float32
         Directions as given; broadcast to the shape of the origins.
 

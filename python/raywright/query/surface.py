@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Surface:
-    """All about the points of some hits; all arrays are float64, and NaN for misses.
+    """Differential geometry at hits; all arrays are float64, and NaN for misses.
 
     Attributes
     ----------
     position : (..., 3)
         Positions of the points.
     error : (...)
-        Bound on how far each coordinate of `position` is from a point of the surface.
+        Error bound: maximum distance of each coordinate of `position` from a point of the surface.
     normal : (..., 3)
         Unit geometric normal: as the winding gives it, or to the outside of a closed shape.
     shading_normal : (..., 3)
-        Unit normal as the vertices give it, on the side of `normal`; the same where there are none.
+        Unit normal interpolated from those of vertices, on the side of `normal`; equal to `normal` without
+        vertex normals.
     dp_du, dp_dv : (..., 3)
         Derivatives of the position with respect to u and v.
     dn_du, dn_dv : (..., 3)

@@ -15,7 +15,7 @@ from ..arrays import sealed
 class TreeBoxes:
     """The boxes of all nodes of an accelerator, from the root down: `Scene.tree_boxes` makes it.
 
-    Arrays are read-only. A scene of meshes and other shapes has two trees, one over each, and so two roots.
+    Arrays are read-only. A scene of meshes and curved shapes has two trees, and so two roots.
 
     Attributes
     ----------
@@ -24,8 +24,8 @@ class TreeBoxes:
     primitives : (K,) int32
         Number of primitives in a leaf; -1 for an inner node.
     corners : (K, 8, 3) float64
-        The corners of each box. Bits 0 to 2 of a corner's number are set where it is at the greater end of
-        the first to the third axis of its tree, which may be turned from the scene's.
+        The corners of each box. Bits 0 to 2 of a corner's index are set for the greater end along the first
+        to third axis of the tree, which may be rotated against the scene's axes.
 
     See Also
     --------

@@ -80,28 +80,28 @@ def aovs(
         (displacement of the point while the shutter is open, in the scene's space), ``"screen_motion"``
         (displacement in the picture, in pixels to the right and down), ``"alpha"`` (covered share of the
         pixel; masks cover by their opacity, glass covers everything behind it), ``"cryptomatte"`` (the six
-        shapes that cover most of the pixel, the largest first, each as its number, -1 for none, and its share
-        of the pixel). All of them if not given.
+        shapes that cover most of the pixel, the largest first, each with its index, -1 for none, and its
+        share of the pixel). All of them if not given.
     samples : int
-        Samples per pixel, over its square, the lens and the shutter: a pixel is the mean of those that see
-        something. Numbers of shapes and primitives are those of its middle.
+        Samples per pixel, over its square, the lens and the shutter: a value is the mean of the samples that
+        hit something. Indices of shapes and primitives are those at the pixel's center.
     seed : int, Generator or SeedSequence
-        Picks the random numbers.
+        Seed of the random numbers.
     threads : int, optional
         Number of threads; all cores if not given.
 
     Returns
     -------
     dict of str to array
-        (H, W), (H, W, 2 or 3) or (H, W, 6, 2) float32, and int32 for numbers of things alone; read-only, row
-        0 the top.
+        (H, W), (H, W, 2 or 3) or (H, W, 6, 2) float32, and int32 for single indices; read-only, row 0 the
+        top.
 
     Raises
     ------
     ValueError
         If a name is not known, or a number out of its range.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

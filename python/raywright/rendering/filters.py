@@ -51,7 +51,7 @@ class BoxFilter:
 
 @dataclass(frozen=True)
 class TriangleFilter:
-    """A tent: falls evenly from the pixel's centre to 0 at `radius` along each axis.
+    """A tent: linear from the pixel's center to 0 at `radius`, along each axis.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class TriangleFilter:
 
 @dataclass(frozen=True)
 class GaussianFilter:
-    """A bell, less its value at `radius`, so that it ends without a step (Pharr, Jakob and Humphreys 2023).
+    """A Gaussian minus its value at `radius`, so it ends without a step (Pharr, Jakob and Humphreys 2023).
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ class BlackmanHarrisFilter:
 
 @dataclass(frozen=True)
 class LanczosFilter:
-    """A sinc under the middle of a wider one (Duchon 1979): the sharpest, with negative lobes that ring.
+    """A sinc in the window of a wider one (Duchon 1979): the sharpest filter, with lobes that ring.
 
     Parameters
     ----------
@@ -231,8 +231,8 @@ WholeFilter = (
 class CroppedFilter:
     """Another filter, cropped at the border of the film.
 
-    Pixels nearer to the film's edge than its radius use the part of it on the film, normalized; other pixels
-    are unaffected. Mitsuba's films are so, unless they have a ``sample_border``.
+    Pixels nearer to the film's edge than the radius use the part of the filter on the film, normalized; other
+    pixels are unaffected. Mitsuba's films do so, unless they have a ``sample_border``.
 
     Parameters
     ----------

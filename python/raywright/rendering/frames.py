@@ -48,31 +48,28 @@ def render_frames(
     Parameters
     ----------
     frames : callable or iterable
-        Gives each frame its scene and its camera: a function of the frame's number, from 0 on, or something
-        to iterate over. Scenes may be moved by `Scene.refit`, which is much faster than a new scene: the next
-        frame is requested after the last one is done.
+        Scene and camera of each frame: a function of the frame's number, from 0 on, or an iterable. It may
+        move a scene by `Scene.refit`, much faster than making a new one: a frame is requested after the
+        previous one is done.
     out : str, path or callable
-        ``"frames/{:04}.png"``, a name with a place for the number, of any picture that `Image.save` writes;
-        or a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio, and pixels of an
-        even number along both sides unless it is a .webm; or a function that is given the number and the
-        `Image`.
+        A format string for file names, such as ``"frames/{:04}.png"``, with any suffix that `Image.save`
+        takes; or a film, ``"film.mp4"`` (also .mov, .mkv, .webm), which needs imageio, and an even width and
+        height except for .webm; or a function of the number and the `Image`.
     count : int, optional
-        How many frames; a function needs it, and something to iterate over ends there if it does not before.
+        Number of frames; required with a function, a maximum for an iterable.
     seed : int, Generator or SeedSequence
-        That of the first frame. Each of the others has that of the one before and one more, so that noise
-        does not stand still.
+        Seed of the first frame. It grows by one from frame to frame, so that noise does not stand still.
     fps : float
         Frames a second of a film.
     exposure, tone
         As for `Image.save`; the same for all frames.
     progress : bool
-        Whether to show a bar on stderr that counts frames.
+        True for a progress bar on stderr that counts frames.
     preview : "headlight", 3 floats, DirectionalLight or PointLight, optional
-        A light by which `Scene.preview` draws the frames instead, to see how things move before they are
-        rendered.
+        Light of a preview: `Scene.preview` draws the frames with it instead of rendering them.
     **how
-        Other arguments of `render`, for all frames: its integrator, limits, and so on; or of `Scene.preview`:
-        its ambient light, background and threads.
+        Other arguments of `render` for all frames, such as the integrator and limits; with `preview`, of
+        `Scene.preview`.
 
     Returns
     -------
@@ -82,8 +79,8 @@ def render_frames(
     Raises
     ------
     ValueError
-        If a number is out of its range, `out` has no place for the number, or a film cannot have frames of
-        such a size; and as `render` does.
+        If a number is out of its range, `out` has no field for the number, or a film cannot have the size of
+        the frames; and as `render` does.
     TypeError
         If an argument is of the wrong kind, or a frame is no scene and camera; and as `render` does.
     ImportError
@@ -91,7 +88,7 @@ def render_frames(
     OSError
         If a file cannot be written, or the encoder of a film fails.
     KeyboardInterrupt
-        When Ctrl-C is pressed. Frames that were done are kept, and a film ends with the last of them.
+        When Ctrl-C is pressed. Finished frames are kept, and a film ends with the last of them.
 
     See Also
     --------

@@ -25,18 +25,18 @@ class Halves:
     Attributes
     ----------
     quarters : (4, H, W, 3) float32
-        Means of four independent parts of the samples: the first two are one half, the others the other. The
-        batches of a sampler go to the parts in turns.
+        Means of four independent parts of the samples; the first two parts are one half. The batches of a
+        sampler are dealt to the parts in turn.
     variance : (2, H, W, 3) float32
         The variance of the mean of either half, as for independent samples.
     albedo, normal : (2, H, W, 3) float32
         Two independent pictures of the first hit's albedo and shading normal.
     depth : (2, H, W) float32
-        The same of the distance along the ray; infinite where nothing is seen.
+        Two independent pictures of the distance along the ray; infinite for the background.
     samples : int
         Samples per pixel of the picture.
     patch : int
-        The side of the squares of pixels whose samples are taken together.
+        Side of the square patches of pixels that share paths.
 
     See Also
     --------
@@ -73,7 +73,7 @@ class Halves:
 
     @property
     def features(self) -> NDArray[np.float64]:
-        """Albedo, normal and nearness, (2, H, W, 7) float64: nearness is 0 where nothing is seen, below 1."""
+        """Albedo, normal and nearness, (2, H, W, 7) float64: nearness is 0 for the background."""
         depth = self.depth.astype(np.float64)
         is_seen = np.isfinite(depth)
         middle = float(np.median(depth[is_seen])) if is_seen.any() else 0.0

@@ -29,17 +29,17 @@ class ErrorEstimate:
     """An estimate of the relative mean squared error (relMSE) of a picture, with its 95 % interval.
 
     relMSE is the mean of (x - ref)² / (ref² + 0.01) over pixels and channels. ``float()`` gives the estimate.
-    It is made of the samples: light that none of them has met is not in it.
+    It is computed from the samples, so it cannot include light that no sample found.
 
     Attributes
     ----------
     estimate, low, high : float
-        The estimate, and the ends of its interval; NaN where there are too few samples to know.
+        The estimate, and the ends of its interval; NaN if there are too few samples.
     trusted : bool
-        True if the estimate rests on many samples that agree on it. If not, light is found so rarely that a
-        few samples carry more than half of the estimate, and one more or one fewer would change it; or the
-        interval is more than thirtyfold, so that finds may be strays or the first of many. A sample whose
-        neighbors' samples all show the same, as on the rim of a lamp, is no such rare find.
+        True if many samples support the estimate. False if a few samples carry more than half of the
+        estimate, so that one more or fewer would change it; or if the ends of the interval differ by more
+        than a factor of thirty. Bright samples that all neighboring pixels confirm, as on the rim of a lamp,
+        are not such rare samples.
 
     See Also
     --------
@@ -96,13 +96,13 @@ class Image:
         Linear red, green and blue: radiance in W·sr⁻¹·m⁻². In a transparent picture, colors are premultiplied
         by alpha.
     standard_error : (H, W, 3) float32
-        Standard error of `rgb`, by each pixel's own samples. Its square has no bias; where samples come in
-        few batches, it is quite uncertain itself, and `interval` is the better answer.
+        Standard error of `rgb`, by each pixel's own samples. Its square is unbiased. With few batches of
+        samples it is uncertain itself; use `interval` then.
     error : ErrorEstimate
         relMSE of the whole picture, with its 95 % interval.
     history : (K,) structured array
-        Fields ``seconds`` (float64), ``samples`` (int64, per pixel) and ``error`` (float64, relMSE), as the
-        render went.
+        Fields ``seconds`` (float64), ``samples`` (int64, per pixel) and ``error`` (float64, relMSE), over the
+        course of the render.
     seconds : float
         Run time of the render.
     samples : int
@@ -110,30 +110,30 @@ class Image:
     warnings : tuple of str
         Reasons to distrust the picture; empty if there are none.
     biased : bool
-        True if the expectation differs from the scene: darker if samples were clamped, or blurred by photon
-        maps (`bias`) or by the denoiser.
+        True if the expectation differs from the true radiance: clamped samples make it darker, photon maps
+        (`bias`) and the denoiser blur it.
     aov : dict of str to (H, W, ...) arrays
         Auxiliary buffers by name: those that `aov` of `render` requested, and ``samples`` (uint32) of each
         pixel if the render was adaptive.
     plan : RenderPlan
         Options that were chosen automatically, such as the sampler, with reasons.
     pooled_error : (H, W, 3) float32, optional
-        The standard error, pooled with the pixels around, for `interval`: where samples come in batches, one
-        pixel has few of them. `standard_error` is taken if it is not given.
+        Standard error pooled over neighboring pixels, for `interval`, because one pixel has few batches. If
+        not given, `standard_error` is used.
     degrees : (H, W) float32, optional
-        Degrees of freedom of `pooled_error`; without them it is taken as exact.
+        Degrees of freedom of `pooled_error`; infinite if not given.
     alpha : (H, W) float32, optional
-        The share of each pixel that is covered, of a picture with a transparent background; filters of
-        negative lobes may take it a little out of 0..1.
+        Covered share of each pixel, for a transparent background; filters with negative lobes may exceed 0..1
+        slightly.
     bias : (H, W, 3) float32, optional
-        Expected excess of each pixel over the scene, because photon maps blur; None where it is not. It is no
-        part of `standard_error` and `error`. It is estimated from at most 16 samples, each with disks of the
-        radius r, of r/√2 and of r/2 about the same points in the same photons (see `PhotonMap`): twice the
-        difference of the first two, as for a bias proportional to r², or four times that of the last two, if
-        it is more and they differ by more than four standard errors. A bias that is alike in all three disks,
-        such as that of a shadow's edge through the point, is not included.
+        Estimated bias of each pixel by the blur of photon maps; None without photon maps. It is not included
+        in `standard_error` and `error`. It is estimated from at most 16 samples, each with disks of the
+        radius r, of r/√2 and of r/2 about the same points and with the same photons (see `PhotonMap`). The
+        bias is twice the difference of the first two, assuming it is proportional to r²; or four times that
+        of the last two, if that is larger and they differ by more than four standard errors. A bias that is
+        equal in all three disks, such as at the edge of a shadow through the point, is not included.
     bias_error : (H, W, 3) float32, optional
-        Standard error of `bias`, by groups of its samples: it is often more than the bias itself.
+        Standard error of `bias`, from groups of its samples; it often exceeds the bias.
     halves : Halves, optional
         Two independent halves of the picture, for `denoise`; ``halves`` of `render` keeps them.
 
@@ -205,18 +205,18 @@ class Image:
     def interval(self, level: float = 0.95) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Return a confidence interval for every pixel.
 
-        The ends are `rgb` ± `pooled_error` times a quantile of Student's t. Light that no sample has found is
-        in no estimate.
+        The ends are `rgb` ± `pooled_error` times a quantile of Student's t. No estimate includes light that
+        no sample found.
 
         Parameters
         ----------
         level : float
-            The share of cases, above 0 and below 1.
+            Confidence level, above 0 and below 1.
 
         Returns
         -------
         low, high : (H, W, 3) float32
-            NaN where there are too few samples to know.
+            NaN if there are too few samples.
 
         Raises
         ------
@@ -251,10 +251,10 @@ class Image:
     def denoise(self, method: str = "regression", *, threads: int | None = None) -> Image:
         """Return a denoised picture, with its error.
 
-        Each half of the samples is filtered by itself, in several ways. A quarter of the samples, in the
-        other half, selects the best filter for each place, no filter included; the last quarter measures the
-        error of the result. So `error` is that of the returned picture, blur included: without bias, and with
-        an interval, as for unfiltered pictures.
+        Each half of the samples is filtered by itself, with several filters. A quarter of the samples, from
+        the other half, selects the best filter for each pixel, or none; the last quarter measures the error
+        of the result. So `error` is that of the returned picture, blur included, unbiased and with an
+        interval, as for unfiltered pictures.
 
         Parameters
         ----------
@@ -268,9 +268,9 @@ class Image:
         Returns
         -------
         Image
-            With the error of its own. `standard_error` is the error of pixels, blur included, estimated in
-            squares of 13 by 13 pixels. `plan` has a row about it; `biased` is True, and `halves` and other
-            fields that describe the noisy picture are None.
+            The denoised picture. `standard_error` is the error of pixels, blur included, estimated in squares
+            of 13 by 13 pixels. `plan` has a row about it; `biased` is True, and `halves` and other fields
+            that describe the noisy picture are None.
 
         Raises
         ------
@@ -287,8 +287,8 @@ class Image:
 
         Notes
         -----
-        Light that no sample has found is in no estimate. If the error of the noisy picture cannot be trusted,
-        that of the denoised one cannot either. Below some 10,000 pixels intervals are wide, since only one
+        No estimate includes light that no sample found. If the error of the noisy picture is not trusted,
+        that of the denoised one is not either. Below some 10,000 pixels intervals are wide, since only one
         quarter of the samples measures the error.
 
         Examples
@@ -389,7 +389,7 @@ class Image:
         Raises
         ------
         ValueError
-            If the suffix is another one, the exposure is out of -100..100, or the tone is not known.
+            If the suffix is not supported, the exposure is out of -100..100, or the tone is not known.
         ImportError
             If the suffix is one that the installed Pillow cannot write.
         OSError
@@ -428,7 +428,7 @@ class Image:
         Parameters
         ----------
         rows : int
-            The most rows to print; a longer history is thinned so that samples grow by even factors.
+            Maximum number of rows; a longer history is thinned to even factors of samples.
 
         Returns
         -------

@@ -39,10 +39,10 @@ class RenderPlan:
     rows : tuple of Choice
         Each option with its value and the reason. None for a picture that was not rendered.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, or None
-        Sampler of the random numbers. With this, and the same number of samples, the same seed gives the same
-        picture, whichever limit ended it.
+        Sampler of the random numbers. With this sampler and the same number of samples, the same seed gives
+        the same picture, for any limit.
     path : Path or None
-        The path tracer, with all that was chosen for it; None for other kinds of integrators.
+        The path tracer with the chosen options; None for other integrators.
 
     See Also
     --------
@@ -76,7 +76,7 @@ class RenderPlan:
         raise KeyError(what)
 
     def explained(self, what: str, why: str) -> RenderPlan:
-        """Return the plan with one more reason in the row of an option.
+        """Return the plan with a reason appended to the row of an option.
 
         Parameters
         ----------

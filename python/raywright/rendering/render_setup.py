@@ -37,9 +37,9 @@ class RenderSetup:
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
         Sampler of the random numbers; None leaves it to `render`.
     filter : BoxFilter, GaussianFilter or another kind
-        What part of the film a pixel is the mean of.
+        Reconstruction filter of pixels.
     seed : int, Generator or SeedSequence
-        Picks the random numbers.
+        Seed of the random numbers.
     aov : tuple of str
         Auxiliary buffers of the first hit, as in `raywright.render`.
     background : {"shown", "transparent"}
@@ -85,8 +85,8 @@ class RenderSetup:
         Parameters
         ----------
         **overrides
-            Arguments of `raywright.render`, in place of the shot's own. The samples of the shot count only
-            where none of `samples`, `error` and `seconds` is given.
+            Arguments of `raywright.render`, in place of the shot's own. The shot's samples are used only if
+            none of `samples`, `error` and `seconds` is given.
 
         Returns
         -------

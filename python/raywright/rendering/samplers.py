@@ -42,9 +42,9 @@ class Stratified:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
-        that an error is likely to take; 16 at most if time may end the render; half of that if it is
-        adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of the
+        number that an error limit is likely to take; at most 16 with a time limit; half of that if adaptive.
+        ``image.plan`` reports it.
 
     Raises
     ------
@@ -78,9 +78,9 @@ class Halton:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
-        that an error is likely to take; 16 at most if time may end the render; half of that if it is
-        adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of the
+        number that an error limit is likely to take; at most 16 with a time limit; half of that if adaptive.
+        ``image.plan`` reports it.
 
     Raises
     ------
@@ -109,14 +109,14 @@ class Halton:
 class Sobol:
     """Sobol's (0, 2)-sequence (1967), scrambled as Owen (1995) does, anew for each pair of dimensions.
 
-    Choices, as of a light, are placed together with the point that is chosen on it.
+    The choice of a light is stratified jointly with the point on it.
 
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
-        that an error is likely to take; 16 at most if time may end the render; half of that if it is
-        adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of the
+        number that an error limit is likely to take; at most 16 with a time limit; half of that if adaptive.
+        ``image.plan`` reports it.
 
     Raises
     ------
@@ -155,9 +155,9 @@ class Lattice:
     Parameters
     ----------
     batch : int, optional
-        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of those
-        that an error is likely to take; 16 at most if time may end the render; half of that if it is
-        adaptive. ``image.plan`` tells.
+        Samples of a batch: 1, 2, 4, ... 64. If not given, a quarter of the requested samples, or of the
+        number that an error limit is likely to take; at most 16 with a time limit; half of that if adaptive.
+        ``image.plan`` reports it.
 
     Raises
     ------

@@ -25,7 +25,7 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
     Attributes
     ----------
     measured : tuple of Measured
-        All that was measured, also set by set.
+        All measurements, for each set of rays.
 
     See Also
     --------
@@ -142,28 +142,28 @@ def accelerators(
 ) -> AcceleratorReport:
     """Compare accelerators on the same rays: build time, memory, and time of rays.
 
-    Every accelerator is built over the scene's shapes. They take turns, set of rays by set of rays, and each
-    turn begins with another, so that other load of the machine is shared evenly; results are medians over the
-    turns. All are in memory at once.
+    Every accelerator is built over the scene's shapes. They take turns on each set of rays, and each turn
+    starts with a different one, so other load on the machine affects all equally; results are medians over
+    the turns. All of them are in memory at once.
 
     Parameters
     ----------
     scene : Scene
         The scene; its own accelerator does not matter.
     rays : Camera, Rays, (origins, directions), or dict of these by names, optional
-        What is asked. A camera gives its primary, diffuse and shadow rays, as in `typical_rays`; if not
-        given, it is one that sees all of the scene from outside.
+        Rays to trace. A camera stands for its primary, diffuse and shadow rays, as in `typical_rays`; by
+        default a camera outside with all of the scene in view.
     accelerators : accelerator, list of them, or dict of them by names, optional
-        All that there are, each with its default options and with each builder and traversal, if not given.
+        Accelerators to compare. By default all, with default options and with each builder and traversal.
     threads : int or None
         Number of threads that trace rays; None is all cores. Builds take all cores in any case.
     repeats : int
-        Number of turns of each accelerator. It is built as often, but for no longer than a second in all.
+        Number of turns of each accelerator, and of builds, within a second in all.
     check : int, optional
-        Number of rays compared with brute force, of all sets together. If not given, as many as brute force
-        answers in a second or two, and 300 at least.
+        Number of rays compared with brute force, of all sets together. If not given, the number that brute
+        force traces in a second or two, but at least 300.
     seed : int, Generator or SeedSequence
-        Which diffuse rays, and which points of lamps.
+        Seed of the directions of diffuse rays and of the points on lamps.
 
     Returns
     -------
@@ -171,9 +171,9 @@ def accelerators(
         Columns: `accelerator`, its name; `kind`; `build_seconds`, the median; `bytes`; `nodes`; `depth`;
         `sah_cost`, None where there is no such cost; `nodes_per_ray` and `tests_per_ray`, nodes visited and
         primitives tested for a ray's closest hit, the mean over all sets of rays; then for each set the
-        million rays a second, by its name; `checked`, how many rays were held against brute force; `wrong`,
-        how many of these differ in hit, t, shape or primitive. ``plot()`` sets rays a second of the first set
-        against time to build.
+        million rays a second, by its name; `checked`, the number of rays compared with brute force; `wrong`,
+        the number of these that differ in hit, t, shape or primitive. ``plot()`` sets rays a second of the
+        first set against time to build.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def accelerators(
         If the scene is empty and no rays are given, no primary ray hits, a set is empty, a number is out of
         its range, or an accelerator is given twice.
     TypeError
-        If something is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------
@@ -191,7 +191,8 @@ def accelerators(
     Notes
     -----
     An accelerator that would take more than about a second for a set is timed on fewer rays of it, evenly
-    spread, with a note on their number. Fewer rays of an image lie further apart, and may take more each.
+    spread, with a note on their number. A sparse set of an image's rays is less coherent, so each may take
+    longer.
 
     Examples
     --------
@@ -223,9 +224,8 @@ def rays_per_build(
 ) -> RaysPerBuild:
     """Rank accelerators by rays a second, builds included.
 
-    A scene that changes pays for a build again and again: the fewer rays it traces in between, the less a
-    good tree is worth. Times to build and rays a second are measured as in `accelerators`; times for more
-    rays are extrapolated.
+    A changing scene is rebuilt again and again: with few rays in between, a good tree does not pay. Times to
+    build and rays a second are measured as in `accelerators`; times for more rays are extrapolated.
 
     Parameters
     ----------

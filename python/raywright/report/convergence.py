@@ -64,8 +64,8 @@ class Fit:
 class ConvergenceReport(Table[tuple[Any, ...]]):
     """A row for each contender and budget: `convergence` makes it.
 
-    Its plot is of relMSE over seconds, both logarithmic, with the line that fits each contender; of other
-    columns there is no such line.
+    Its plot is of relMSE over seconds, both logarithmic, with a fitted line for each contender; plots of
+    other columns have no lines.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ def convergence(
     """Compare integrators or options on a scene: relMSE over run time, and its rate of convergence.
 
     Each contender renders for `seconds`, a half of that, a quarter, and so on, six budgets in all, with each
-    seed. They take turns, so that other load of the machine is shared evenly.
+    seed. They take turns, so other load on the machine affects all equally.
 
     Parameters
     ----------
@@ -126,19 +126,19 @@ def convergence(
         An integrator, or arguments of `render` by name, such as ``{"integrator": ..., "adaptive": True}``. If
         not given: path tracing with as many samples everywhere, and with adaptive sampling.
     seconds : float
-        The longest budget of one render; all of them take twice as long, times contenders and seeds.
+        Longest budget of one render. In total the renders take twice as long, times contenders and seeds.
     reference : Image, (H, W, 3) array, or float, optional
-        The right picture, or seconds to make one in, in the way of the first contender. If not given, errors
-        are the renders' own estimates.
+        Reference picture, or seconds for rendering one with the first contender. If not given, errors are the
+        renders' own estimates.
     seeds : int or sequence of int, Generator or SeedSequence
-        How many, or which.
+        Number of seeds, or the seeds.
     threads : int, optional
         Number of threads of each render, unless a contender gives its own; all cores if not given.
 
     Returns
     -------
     ConvergenceReport
-        Columns: `contender`; `budget`, seconds given; `seconds`, taken, the median over seeds; `samples` per
+        Columns: `contender`; `budget`, in seconds; `seconds`, the run time, median over seeds; `samples` per
         pixel, the median; `relmse`, the mean over seeds; `ratio` of the mean estimate to the mean true
         relMSE, None without a reference; `error_seconds`, relMSE times seconds, less being better; `trusted`,
         the share of seeds whose renders trust their own estimates. If the reference is an Image, or was
@@ -147,7 +147,7 @@ def convergence(
     Raises
     ------
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
     ValueError
         If there is no contender, one has an argument that `render` has not or that is given by the report, a
         number is out of its range, or the reference has another size than the picture.

@@ -28,10 +28,10 @@ _COLUMNS = (
 def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats: int = 5) -> Table[Any]:
     """Time `Scene.intersect` and `Scene.first_hits` on the same picture.
 
-    Both are timed in turns, and medians are returned. `intersect` is timed twice: with the rays at hand, and
-    with the time that it takes to make them, which rasterising does on its way. Rasterization pays if faces
-    are few next to pixels and little is hidden; otherwise the tree is traced: for parts of the picture, or
-    for all of it if there are more faces than a quarter of its pixels.
+    Both are timed in turns, and medians are returned. `intersect` is timed with given rays, and including the
+    generation of rays, which rasterization also does. Rasterization pays with few faces per pixel and little
+    occlusion. Otherwise rays are traced: for parts of the picture, or for all of it with more faces than a
+    quarter of its pixels.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     ValueError
         If `repeats` or `threads` is below 1, or something in the scene is no mesh.
     TypeError
-        If an argument is of the wrong kind.
+        If an argument has the wrong type.
 
     See Also
     --------

@@ -40,9 +40,9 @@ class Heatmap:
     what : {"nodes", "primitives"}
         The count in the picture.
     most : int
-        The count of the last color; greater counts have it, too.
+        Count of the last color, which greater counts have too.
     share : TimeShare or None
-        The estimated share of time in boxes and in primitives, if it was asked for.
+        Estimated shares of time in boxes and in primitives, if requested.
 
     See Also
     --------
@@ -130,13 +130,13 @@ class Heatmap:
         Parameters
         ----------
         path : str or path
-            ``.png`` is the picture with its colour bar; small ones are enlarged, each pixel to a square.
-            ``.npy`` holds the counts that it shows.
+            ``.png`` is the picture with its color bar; pixels of small pictures are enlarged to squares.
+            ``.npy`` holds the counts of the picture.
 
         Raises
         ------
         ValueError
-            If the suffix is another one.
+            If the suffix is not supported.
         OSError
             If the file cannot be written.
 
@@ -262,8 +262,8 @@ def heatmap(
     what : {"nodes", "primitives"}
         The count in the picture: nodes visited, or primitives tested.
     most : int, optional
-        The count that has the last colour, at least 1; the greatest there is if not given. Pictures to be
-        compared need the same one.
+        Count of the last color, at least 1; by default the maximum. Use the same value for pictures to
+        compare.
     repeats : int
         Number of timings for the shares of time (`time_share`); 0 leaves them out.
     threads : int, optional

@@ -16,14 +16,14 @@ _TITLE = "Rays per build: rays a second, with the build counted in"
 
 
 class BuildRow(NamedTuple):
-    """One accelerator, built once for so many rays.
+    """Time of one accelerator for a build and a number of rays.
 
     Attributes
     ----------
     rays : int
         Number of rays traced after the build.
     accelerator : str
-        Its name.
+        Name of the accelerator.
     seconds : float
         Build and rays together.
     mrays : float

@@ -106,25 +106,25 @@ class Rays:
 
 
 def typical_rays(scene: Scene, camera: AnyCamera | None = None, seed: SeedLike = 0) -> dict[str, Rays]:
-    """Return the rays that a renderer asks for: primary, diffuse and shadow.
+    """Return the typical rays of a renderer: primary, diffuse and shadow.
 
     Parameters
     ----------
     scene : Scene
         The scene that they are traced in.
     camera : Camera or another kind, optional
-        Whose the primary rays are, one through the centre of each pixel. If not given, one of 256 by 256
-        pixels that sees all of the scene from outside.
+        Camera of the primary rays, one through the center of each pixel. If not given, a camera outside with
+        all of the scene in view, of 256 by 256 pixels.
     seed : int, Generator or SeedSequence
-        Which directions the diffuse rays have.
+        Seed of the directions of diffuse rays.
 
     Returns
     -------
     dict of Rays
-        ``"primary"``, an image. ``"diffuse"``, one from each point that is seen, in the order of the pixels,
-        distributed as the cosine to the normal on the side of the camera. ``"shadow"``, one from each such
-        point to a lamp, any hit: to the scene's point lights in turn; or to points of its shining meshes,
-        evenly by area; or, where nothing shines, to a lamp above the camera's right shoulder.
+        ``"primary"``, an image. ``"diffuse"``, one from each visible point, in the order of pixels,
+        cosine-weighted about the normal on the side of the camera. ``"shadow"``, one any-hit ray from each
+        such point to a lamp: to the scene's point lights in turn; or to points on its emissive meshes,
+        uniform in area; or, without lights, to a lamp above the camera's right shoulder.
 
     Raises
     ------

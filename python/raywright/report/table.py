@@ -28,7 +28,7 @@ class Column:
     heading : str
         Heading with the unit.
     form : str
-        Format of its numbers, as for `format`; text is not formatted, None is ``-``.
+        Format specification of numbers, as for `format`; text is not formatted, and None is ``-``.
 
     See Also
     --------
@@ -75,11 +75,11 @@ class Chart:
     x, y : str
         Columns of numbers, each on a logarithmic axis.
     color : str
-        Rows that agree in this column have one colour.
+        Column that determines the color.
     marker : str, optional
-        Rows that agree in this column have one marker.
+        Column that determines the marker.
     lines : bool
-        True to join the rows of one colour and one marker, in their order.
+        True to connect rows of equal color and marker, in order.
 
     See Also
     --------
@@ -178,7 +178,7 @@ class Table(Generic[Row]):
         return tuple(row[at] for row in self.rows)
 
     def where(self, **wanted: Any) -> Self:
-        """Return the table of the rows with these entries, by the names of columns.
+        """Return a table of the rows with the given entries.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ class Table(Generic[Row]):
         return "\n".join(f"| {' | '.join(line)} |" for line in (lines[0], rule, *lines[1:]))
 
     def to_dataframe(self) -> Any:
-        """Return the table as a pandas DataFrame, whose columns have the names of these.
+        """Return the table as a pandas DataFrame with the same column names.
 
         Returns
         -------
@@ -285,7 +285,7 @@ class Table(Generic[Row]):
     def plot(self, ax: Any = None, x: str | None = None, y: str | None = None) -> Any:
         """Plot one column against another on logarithmic axes.
 
-        A zero, which has no logarithm, is drawn at half the least number above zero of its column; rows
+        Zeros, which have no logarithm, are drawn at half of the least positive number of the column; rows
         without a number are left out.
 
         Parameters

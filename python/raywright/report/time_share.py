@@ -26,7 +26,7 @@ Pieces = list[tuple[NDArray[np.floating[Any]], NDArray[np.floating[Any]]]]
 
 @dataclass(frozen=True)
 class TimeShare:
-    """Shares of the time that rays take, estimated: `time_share` tells how.
+    """Estimated shares of the time of rays: see `time_share`.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class TimeShare:
     boxes_interval, primitives_interval : (float, float)
         Bounds of the 95 % interval of a share.
     node_ns, primitive_ns, ray_ns : float
-        Nanoseconds that the fit has for a visited node, a tested primitive, and a ray in any case.
+        Fitted nanoseconds for a visited node, a tested primitive, and the fixed time of a ray.
     explained : float
         Share of the variance of time among batches that the counts explain, 1 at most. A small share means
         that the estimate is useless.
@@ -76,13 +76,12 @@ def time_share(scene: Scene, rays: Any, repeats: int = 7) -> TimeShare:
     """Estimate the shares of rays' time that boxes and primitives take.
 
     The rays are cut into batches, squares of the picture if they are an image. Each is timed on one thread,
-    several times in turns, and its nodes and primitives are counted. A least squares fit of the batches'
-    median times, without negative costs, then has a time for a node, one for a primitive, and one for a ray
-    in any case.
+    several times in turns, and its nodes and primitives are counted. A non-negative least squares fit to the
+    median times of batches gives a time for each node, for each primitive, and a fixed time for each ray.
 
-    It is an estimate, no measurement: if the counts of nodes and of primitives are correlated, the fit cannot
-    separate them, which the intervals show (a bootstrap over batches); and costs that go with a count, such
-    as waiting for memory or sorting children, are included in its cost.
+    It is an estimate: if the counts of nodes and of primitives are correlated, the fit cannot separate them,
+    and the intervals (bootstrap over batches) are wide. Costs in proportion to a count, such as waiting for
+    memory or sorting children, are included in its cost.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ _EDGES = np.array([(i, i | 1 << bit) for i in range(8) for bit in range(3) if no
 def tree(
     scene: Scene, depth: int | None = None, plane: Plane = "xy", leaves: bool = False, ax: Any = None
 ) -> Any:
-    """Draw the boxes of a scene's accelerator, seen along an axis: the deeper, the lighter.
+    """Draw the boxes of a scene's accelerator, seen along an axis; deeper boxes are lighter.
 
     Parameters
     ----------

@@ -47,7 +47,7 @@ class KernelRow(NamedTuple):
         Wrong decisions: hits that the routine misses, and misses that it takes for hits.
     median_ulps, max_ulps : float or None
         Median and largest error of t where there is a hit and the routine finds it, in units in the last
-        place of a float32; None where there is no such hit.
+        place of float32; None without such a hit.
 
     See Also
     --------
@@ -126,29 +126,29 @@ class KernelReport(Table[KernelRow]):
 
 
 def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> KernelReport:
-    """Try every ray-triangle routine on pairs of a ray and a triangle, and tell its error and its time.
+    """Measure error and time of every ray-triangle routine on pairs of a ray and a triangle.
 
     Families of pairs: ordinary; slivers of aspect 1e3 to 1e8; grazing rays at a sine of 1e-7 to 1e-3; origins
-    1e3 to 1e8 sizes away; rays aimed at edges and vertices; scales of 1e-18 to 1e18. Half of the rays hit, as
-    far as float32 can aim, in random order. All numbers are float32, and each routine's answers are held
-    against exact integer arithmetic on these numbers. (A wrong decision need not be a leak: most routines
-    agree with themselves on an edge that two triangles share.)
+    1e3 to 1e8 sizes away; rays aimed at edges and vertices; scales of 1e-18 to 1e18. About half of the rays
+    hit, in random order. All numbers are float32, and results are compared with exact integer arithmetic on
+    these numbers. (A wrong decision need not be a leak: most routines agree with themselves on an edge that
+    two triangles share.)
 
     The routines: Möller and Trumbore (1997) with edges stored and without; Badouel (1990); signed volumes
     (Segura and Feito 2001); Woop, Benthin and Wald (2013); and the edge form in float32, and in float64 with
-    an exact fallback, which is the library's own. Each tests one triangle at a time on one thread; terms of
-    the ray alone are computed beforehand, and not timed. (Scenes are traced by the same float64 test, after
-    one in vectors has rejected most triangles.)
+    an exact fallback, which is the library's own. Each tests one triangle at a time on one thread; terms that
+    depend only on the ray are computed beforehand, and not timed. (Scenes use the same float64 test, after a
+    vectorized float32 test has rejected most triangles.)
 
     Parameters
     ----------
     pairs : int
         Pairs in each family, 1 to 100,000.
     seed : int, Generator or SeedSequence
-        Which pairs: the same seed, the same pairs and errors.
+        Seed of the pairs; the same seed gives the same pairs and errors.
     repeat : int
-        Number of timings of each routine, 1 to 10,000; the result is the median. Routines take turns, so that
-        other load of the machine is shared evenly.
+        Number of timings of each routine, 1 to 10,000; the result is the median. Routines take turns, so
+        other load on the machine affects all equally.
 
     Returns
     -------

@@ -58,23 +58,23 @@ class Instance:
 
     Materials and emission are those of the shapes. Emission of copies that stand still, at most 4096 in all,
     is sampled as a light, each face of each copy by itself. Emission of other copies (moving, nested, or more
-    of them) is not sampled: it is found only by rays that meet it, so keep small bright lights out of these.
+    of them) is not sampled: only paths that hit it find it, so avoid small bright lights there.
 
     Parameters
     ----------
     shapes : Mesh or another shape, Instance, path, object of another library, or list or dict of these
-        Shapes to copy: everything that a `Scene` takes. Instances of the same shapes, the very same objects,
-        share the compiled form.
+        Shapes to copy: everything that a `Scene` takes. Instances of identical objects share the compiled
+        form.
     transform : (4, 4) or (N, 4, 4) array
         Transforms of the copies: affine matrices that act on column vectors (x, y, z, 1), each with (0, 0, 0,
         1) as its last row, and invertible.
     transform_end : array of the same shape, optional
         Transforms as the shutter closes, for copies that move. At a time between 0 and 1 the matrix is
         ``transform + (transform_end - transform) * time``, number by number: every point moves on a straight
-        line, and large rotations should be cut into shorter times. Should a matrix between have no inverse,
-        the copy is not seen then.
+        line, so large rotations need several steps. At times without an inverse matrix, the copy is
+        invisible.
     accelerator : BVH or another accelerator, optional
-        The structure that finds hits in the shapes, by itself; ``BVH()`` if not given.
+        The accelerator over the shapes; ``BVH()`` if not given.
     name : str, optional
         Name that `Hits.names` returns for every hit in the instance.
 
@@ -85,7 +85,7 @@ class Instance:
         conditioned for rays to keep their digits (the error says which and why), or there are 2^31 primitives
         or more, all copies within counted.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -94,18 +94,17 @@ class Instance:
 
     Notes
     -----
-    ``hits.instance_id`` is the copy, and ``hits.primitive_id`` the place in it, numbered flat: shape after
-    shape, a mesh by its faces, an instance by its copies and for each of them all of its contents. `locate`
-    takes such a number apart.
+    ``hits.instance_id`` is the index of the copy. ``hits.primitive_id`` numbers all primitives of a copy,
+    shape after shape: the faces of a mesh, or for each copy of a nested instance all of its primitives.
+    `locate` decodes such a number.
 
     Rays are transformed to the space of the shapes by the inverse of the matrix, rounded to float64, and hits
     are exact for the transformed ray. Compared with transformed vertices, hits differ by the rounding of
-    these vertices, and not at all where neither rounds, as with integers and powers of two. The difference
-    depends on the condition of the matrix, the greatest row sum of ``|L| |L⁻¹|`` of its linear part ``L``. It
-    is at most 3 for a scaling along the axes of the shapes and a turn after it; matrices of more than 2^20
-    are refused.
+    these vertices, and not at all if neither is rounded, as with integers and powers of two. The difference
+    grows with the condition of the matrix: the greatest row sum of ``|L| |L⁻¹|`` for its linear part ``L``.
+    It is at most 3 for a scaling along the axes followed by a rotation; above 2^20 a matrix is refused.
 
-    Closed surfaces in copies count for ``contains``, and all that is in them for ``closest_point``.
+    ``contains`` includes closed surfaces of copies, and ``closest_point`` all of their surfaces.
 
     Examples
     --------
@@ -180,7 +179,7 @@ class Instance:
         Returns
         -------
         Location
-            The instances on the way to the shape, the shape, its index, and its face.
+            The nested instances, the shape, its index, and its face.
 
         Raises
         ------
@@ -215,9 +214,9 @@ class Instance:
             within = shape
 
     def parts(self, primitive_id: NDArray[np.integer[Any]]) -> Iterator[tuple[AnyShape, Places, Places]]:
-        """Yield each of the shapes that primitives are of, which of them are, and their numbers in it.
+        """Yield each shape that primitives belong to, the entries on it, and their numbers in it.
 
-        Those of an instance within are numbered as its own `parts` takes them.
+        For a nested instance, the numbers are arguments of its own `parts`.
 
         Parameters
         ----------
@@ -252,7 +251,7 @@ class Instance:
             yield shape, which, own % shape.primitives if isinstance(shape, Instance) else own
 
     def moved(self, transform: ArrayLike, transform_end: ArrayLike | None = None) -> Instance:
-        """Return an instance of the same shapes elsewhere; both share the compiled form.
+        """Return an instance of the same shapes with other transforms; both share the compiled form.
 
         Parameters
         ----------

@@ -34,9 +34,9 @@ class Plan:
     Attributes
     ----------
     kernel : str
-        The loop that paths are traced by: ``"plain"`` (one diffuse colour a shape), ``"open"`` (any material)
-        or ``"general"`` (masks, media in one another, filtered textures too). All give the same picture, bit
-        for bit, where they can.
+        Kernel that traces paths: ``"plain"`` (one diffuse color for each shape), ``"open"`` (any material) or
+        ``"general"`` (also masks, nested media, filtered textures). All kernels that support a scene give the
+        same bits.
     rows : tuple of PlanRow
         Every feature, whether this scene has it, and the consequence.
 

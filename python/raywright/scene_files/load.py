@@ -42,9 +42,9 @@ def load(
 ) -> RenderSetup:
     """Read a scene, or a mesh, with the camera, lights and options of a picture.
 
-    A file with light is shown in its own light: lights, or surfaces that give off enough, 0.02 W·sr⁻¹·m⁻² or
-    more on average over all of its surface, or any emission if the file has a camera. A file without light is
-    lit as in `scenes.studio`: for its own camera, or else framed, and on a floor.
+    A file with light is rendered in its own light: lights, or emissive surfaces with at least 0.02 W·sr⁻¹·m⁻²
+    on average over all surfaces, or any emission if the file has a camera. Other files are lit as in
+    `scenes.studio`: for the file's camera, or else framed and on a floor.
 
     Parameters
     ----------
@@ -55,20 +55,20 @@ def load(
         ``pip install 'raywright[usd]'``; or a mesh file: OBJ with its materials, PLY, STL, OFF, or any other
         that trimesh reads.
     up : {"y", "z"}
-        The axis that points up in a mesh file that does not say so; in glTF it is y.
+        The axis that points up in formats without a convention; in glTF it is y.
     width, height : int, optional
-        Size of the picture in pixels: the file's own if not given, or for a file without a camera 640 by 480;
-        if only one is given, the other keeps these proportions.
+        Size of the picture in pixels: the file's own if not given, or 640 by 480 for a file without a camera.
+        If only one is given, the other keeps the proportions.
     sampler : Independent, Stratified, Halton, Sobol or Lattice, optional
-        Sampler in place of the file's. If not given, the file's own; a scene of Mitsuba with the sampler
-        ``independent``, which is the default there, counts as one that names none.
+        Sampler in place of the file's. If not given, the file's own; Mitsuba's default, ``independent``,
+        counts as none.
     weld : "auto", float or None
         Welding distance of corners of meshes, in the scene's unit. "auto" is the rounding of the file's own
-        precision, as for `Scene`; None for those alone that are equal. Only positions are made equal: corners
-        with other normals, coordinates or colors stay vertices of their own.
+        precision, as for `Scene`; None for equal corners only. Only positions change: corners with different
+        normals, coordinates or colors stay separate vertices.
     **parameters
-        Values of ``$name`` in a scene of Mitsuba, in place of its defaults: ``spp=16``. Those of the names
-        above are given by ``from_mitsuba(parameters=)``.
+        Values of ``$name`` in a scene of Mitsuba, in place of its defaults: ``spp=16``. For parameters with
+        the names of other arguments, use ``from_mitsuba(parameters=)``.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def load(
     Warns
     -----
     RuntimeWarning
-        Once of each kind of thing in the file that is not shown as it says.
+        Once for each kind of feature in the file that is ignored or approximated.
 
     See Also
     --------

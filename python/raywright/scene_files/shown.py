@@ -47,7 +47,7 @@ def shown(
     shapes : Mesh, another shape, Instance, or list of these
         Shapes of the file.
     lights : sequence of lights
-        Lights that are no surfaces.
+        Lights without a surface.
     camera : Camera or another kind, optional
         If the file has one.
     up

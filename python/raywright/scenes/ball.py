@@ -21,7 +21,7 @@ def material_ball(
 ) -> tuple[Scene, Camera]:
     """Return a ball of some material on a ring over a checkerboard, lit by a lamp and a soft sky.
 
-    The board shows refraction and reflection, the lamp the highlights, and the sky the rim.
+    The board makes refraction and reflection visible, the lamp highlights, and the sky the rim.
 
     Parameters
     ----------

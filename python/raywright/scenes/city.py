@@ -14,18 +14,18 @@ _FLOOR = 3.5
 
 
 def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
-    """Return a city: a ground, and on it blocks of houses that are higher towards the centre.
+    """Return a city: a ground with blocks of houses, which are higher towards the center.
 
-    Blocks are squares of 60 m with streets of 18 m between, each of 3 by 3 plots with a house or two set one
-    upon the other, and on every roof some smaller boxes. y is up, the ground is at y = 0, and the centre over
+    Blocks are squares of 60 m with streets of 18 m between. Each has 3 by 3 plots with one house or two
+    stacked ones, and some smaller boxes on every roof. y is up, the ground is at y = 0, and the centre over
     the origin.
 
     Parameters
     ----------
     blocks : int
-        Along each side of the city.
+        Number of blocks along each side of the city.
     seed : int, Generator or SeedSequence
-        Which houses.
+        Seed of the houses.
 
     Returns
     -------

@@ -40,23 +40,23 @@ def classics(
     ``for name, (scene, camera) in rw.scenes.classics().items(): print(rw.report.accelerators(scene,
     camera))`` compares accelerators on all:
 
-    - ``"stadium"``: all detail in one place, `teapot_in_stadium`. Grids collapse.
+    - ``"stadium"``: all detail in one place, `teapot_in_stadium`. Grids are slow.
     - ``"terrain"``: detail evenly spread, `terrain`. Grids do well.
-    - ``"straight_wall"`` and ``"diagonal_wall"``: `diagonal_wall` at 0 and at 45 degrees. Boxes fit the one
-      and not the other.
-    - ``"soup"``: no order at all, `soup`.
+    - ``"straight_wall"`` and ``"diagonal_wall"``: `diagonal_wall` at 0 and at 45 degrees. Boxes fit the
+      straight wall only.
+    - ``"soup"``: random triangles, `soup`.
     - ``"city"``: large and small side by side, `city`.
-    - ``"forest"``: a thousand copies of a few trees, `forest`: what is seen is a thousand times what is kept,
-      and triangles and copies have an accelerator each.
-    - ``"room"`` and ``"turned_room"``: long thin boxes seen from inside, `room`; and the same, camera and
-      all, turned by 45 degrees about the y axis.
+    - ``"forest"``: a thousand copies of a few trees, `forest`: a thousand times as many visible triangles as
+      stored ones, with one accelerator over triangles and one over copies.
+    - ``"room"`` and ``"turned_room"``: long thin boxes seen from inside, `room`; and the same with its
+      camera, rotated by 45 degrees about the y axis.
 
     Parameters
     ----------
     triangles : int
-        About how many in each, 1000 at least; in the forest, of the trees that are copied.
+        Approximate number of triangles of each scene, at least 1000; in the forest, of the unique trees.
     seed : int, Generator or SeedSequence
-        Which scenes.
+        Seed of the scenes.
     width, height : int
         Size of the pictures in pixels.
 

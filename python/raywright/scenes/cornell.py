@@ -58,8 +58,8 @@ def cornell_box(
 ) -> tuple[Scene, Camera]:
     """Return the Cornell box (Goral et al. 1984), in millimetres, and the camera that belongs to it.
 
-    The measures are those of the real box at Cornell. So are the colors: measured spectra, as linear Rec. 709
-    in which a uniform spectrum is grey.
+    Dimensions and colors are those of the real box at Cornell. Colors are measured spectra, converted to
+    linear Rec. 709 such that a constant spectrum is gray.
 
     Parameters
     ----------

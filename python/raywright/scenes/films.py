@@ -21,8 +21,8 @@ _BLACK_FILM = 12.0
 def soap_bubble(width: int = 480, height: int = 480) -> tuple[Scene, Camera]:
     """Return a soap bubble in a dark room with two windows, and a camera.
 
-    The soap has run down: the film is black at the top, where it is 12 nm thick, and grows to 1000 nm at the
-    bottom, by way of all the colours of soap. Each window is seen twice, in the front and, upside down, in
+    The soap has drained: the film is black at the top, where it is 12 nm thick, and grows to 1000 nm at the
+    bottom, with all interference colors between. Each window is seen twice, in the front and, upside down, in
     the back.
 
     Parameters

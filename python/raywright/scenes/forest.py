@@ -21,14 +21,14 @@ _LEVELS = 4
 
 
 class Forest(NamedTuple):
-    """Trees, and where each is to be seen.
+    """A forest: unique trees, and the transforms of their copies.
 
     Attributes
     ----------
     trees : list of Mesh
         The unique ones, each with its foot in the origin and y up.
     tree : (N,) int64
-        Index of the tree at each place.
+        Index of the unique tree of each copy.
     transforms : (N, 4, 4) float64
         Transforms of the trees: each acts on column vectors (x, y, z, 1).
 
@@ -54,7 +54,7 @@ class Forest(NamedTuple):
         return int(sizes[self.tree].sum())
 
     def instances(self) -> list[Instance]:
-        """Return the forest as an instance of each tree: as many triangles as one likes.
+        """Return the forest as instances, one for each unique tree.
 
         Returns
         -------
@@ -75,7 +75,7 @@ class Forest(NamedTuple):
         return [Instance(tree, where) for tree, where in zip(self.trees, places, strict=True) if len(where)]
 
     def meshes(self) -> list[Mesh]:
-        """Return every tree where it stands as a mesh of its own: for small forests.
+        """Return the forest as meshes, one for each copy; for small forests.
 
         Returns
         -------
@@ -105,11 +105,11 @@ def forest(
     spacing: float = 6.0,
     seed: SeedLike = 0,
 ) -> Forest:
-    """Return a forest of a few unique trees, each seen many times: by default 10⁹ triangles of 10⁵ unique.
+    """Return a forest of many copies of a few unique trees: by default 10⁹ triangles from 10⁵ unique ones.
 
-    Trees stand one in each square of a grid around the origin, anywhere in it, turned about the y axis and
-    0.7 to 1.3 times as large. A tree is a trunk of 3 m that parts into three, three times over, which is 400
-    triangles of wood; all others are leaves around its twigs.
+    Each square of a grid around the origin has one tree, at a random place, rotated about the y axis and
+    scaled by 0.7 to 1.3. A tree has a trunk of 3 m that branches into three, three times, with 400 triangles;
+    all others are leaves around the twigs.
 
     Parameters
     ----------

@@ -18,8 +18,8 @@ _LAMP_SIZE = 0.3
 def glass_spheres(width: int = 512, height: int = 512) -> tuple[Scene, Camera]:
     """Return the Cornell box with a mirror ball and a glass ball in place of its blocks, and its camera.
 
-    After Jensen, "Global Illumination using Photon Maps" (1996). The lamp is small, so that the light that
-    the balls gather, on the floor and on the walls, is hard to find by paths from the camera.
+    After Jensen, "Global Illumination using Photon Maps" (1996). The lamp is small, so paths from the camera
+    hardly find the caustics of the balls on floor and walls.
 
     Parameters
     ----------

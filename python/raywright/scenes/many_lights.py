@@ -20,13 +20,13 @@ def many_lights(
 ) -> tuple[Scene, Camera]:
     """Return the room of `room` lit by many small lamps of all colours, and a camera.
 
-    Few of them matter at any point: a choice among them by power alone spends its samples on lamps that are
-    far away or turned away.
+    Only a few of them matter at each point: a choice by power alone wastes samples on distant lamps and on
+    those that face away.
 
     Parameters
     ----------
     lights : int
-        How many lamps, at least 1.
+        Number of lamps, at least 1.
     seed : int, Generator or SeedSequence
         Where they are.
     width, height : int

@@ -24,9 +24,9 @@ def veach_plates(width: int = 512, height: int = 512) -> tuple[Scene, Camera]:
     """Return four glossy plates that mirror four lamps, and a camera.
 
     From Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering" (1995): the
-    lamps are small to large and give equal light, the plates are nearly smooth to rough. Asking a lamp finds
-    the light of small ones on rough plates, following the plates' scattering that of large ones on smooth
-    plates; only the two combined leave little noise everywhere.
+    lamps are small to large and give equal light, the plates are nearly smooth to rough. Light sampling suits
+    small lamps on rough plates, and BSDF sampling large lamps on smooth plates; only their combination has
+    little noise everywhere.
 
     Parameters
     ----------

@@ -18,18 +18,17 @@ EYE, TARGET, LAMP = np.array([[0.05, 0.55, 0.93], [0.7, 0.4, 0.3], [0.55, 0.9, 0
 def room(triangles: int = 70_000, seed: SeedLike = 0) -> list[Mesh]:
     """Return a closed room, to be seen from inside, all of long thin boxes: boards, slats and loose beams.
 
-    It is 8 m long, 3 m high (y) and 5 m deep, with a corner in the origin. Each of its six sides is made of
-    boards side by side, with an eighth of all boxes, and the rest are beams anywhere within, some of which
-    stick out. They are shorter and thinner where there are more, so that in every room a ray sees as far.
-    Seven of eight lie along the axes, as in buildings; the others are braces at any angle, which fill little
-    of their bounding box.
+    It is 8 m long, 3 m high (y) and 5 m deep, with a corner in the origin. Its six sides consist of parallel
+    boards, an eighth of all boxes. The others are beams at random places, some of which stick out; their size
+    decreases with their number, so a ray sees equally far in every room. Seven of eight beams are parallel to
+    the axes, as in buildings; the others are braces at any angle, which fill little of their bounding box.
 
     Parameters
     ----------
     triangles : int
-        About how many: 12 a box, and 8 boxes at least.
+        Approximate number of triangles: 12 for each box, and at least 8 boxes.
     seed : int, Generator or SeedSequence
-        Where the beams are.
+        Seed of the places of the beams.
 
     Returns
     -------

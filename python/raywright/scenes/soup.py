@@ -9,22 +9,22 @@ from ..shapes.mesh import Mesh
 
 
 def soup(triangles: int = 10_000, size: float | None = None, seed: SeedLike = 0) -> list[Mesh]:
-    """Return triangles anywhere in the unit cube, at any angle: nothing for an accelerator to go by.
+    """Return random triangles in the unit cube, at any angle: a scene without structure.
 
     Parameters
     ----------
     triangles : int
         Number of triangles.
     size : float, optional
-        Maximum distance of corners from the middle of their triangle. If not given, the less the more there
-        are, so that a ray sees about a third of the cube's edge far.
+        Maximum distance of corners from the middle of their triangle. If not given, it decreases with their
+        number, such that a ray sees about a third of the cube's edge.
     seed : int, Generator or SeedSequence
-        Which triangles.
+        Seed of the triangles.
 
     Returns
     -------
     list of Mesh
-        One mesh, which may reach out of the cube by `size`.
+        One mesh, which may extend beyond the cube by `size`.
 
     Raises
     ------

@@ -17,10 +17,10 @@ _DEPTH, _RISE = 0.8, 0.45
 def teapot_in_stadium(
     divisions: int = 20, tiers: int = 40, around: int = 96, width: float = 0.3
 ) -> list[Mesh]:
-    """Return a teapot in the middle of a stadium: a grid finds it in one or two of its cells.
+    """Return a teapot in the middle of a stadium: it occupies one or two cells of a uniform grid.
 
-    The stadium is a field of 120 m by 80 m, an ellipse, and round it tiers of seats that rise to a wall and
-    a roof around the open middle, all wound to be seen from inside. The teapot stands on the field. y is up.
+    The stadium is a field of 120 m by 80 m, an ellipse, surrounded by rows of seats, a wall, and a roof
+    around the open middle, all oriented inwards. The teapot stands on the field. y is up.
 
     Parameters
     ----------

@@ -31,21 +31,21 @@ def studio(
     height: int = 480,
     accelerator: Accelerator = _BVH,
 ) -> tuple[Scene, Camera]:
-    """Return a scene and a camera that show any mesh well: framed, lit, and on a floor.
+    """Return a studio: a scene and a camera with the mesh framed, lit, and on a floor.
 
-    The camera looks from three quarters; everything is sized by the mesh. A large lamp stands to the camera's
+    The camera has a three-quarter view; all sizes follow from the mesh. A large lamp stands to the camera's
     left, above the mesh, and a soft sky surrounds it.
 
     Parameters
     ----------
     shapes : Mesh, another shape, Instance, trimesh object, path, or list of these
-        What to show; `Scene.shapes` begins with it, and ends with the floor and the lamp.
+        Shapes to show. `Scene.shapes` begins with them, and ends with the floor and the lamp.
     up : {"y", "z"}
         The axis of the mesh that points up.
     width, height : int
         Size of the picture in pixels.
     accelerator : BVH or another accelerator
-        The structure that finds hits.
+        The accelerator.
 
     Returns
     -------

@@ -67,7 +67,7 @@ def teapot(divisions: int = 10, material: Material | None = None) -> Mesh:
     ValueError
         If `divisions` is below 1.
     TypeError
-        If something is of the wrong type.
+        If an argument has the wrong type.
 
     See Also
     --------

@@ -14,21 +14,21 @@ _HEIGHT = 6.0
 
 
 def terrain(side: int = 160, blades: int = 50_000, seed: SeedLike = 0) -> list[Mesh]:
-    """Return hills, and blades of grass spread evenly over them: what grids are good at.
+    """Return hills with evenly spread blades of grass: a scene that suits grids.
 
     The ground is a square of 100 m around the y axis, which is up. Its heights are random waves whose power
     falls with the fourth power of their frequency, scaled to 6 m from the lowest point to the highest. A
-    blade of grass is one thin triangle, which leans some way; blades stand one in each cell of a grid with as
-    many cells as there are blades, or a few more, anywhere in the cell.
+    blade of grass is one thin triangle, tilted at random. Blades are jittered: at most one in each cell of a
+    grid with about as many cells as blades.
 
     Parameters
     ----------
     side : int
-        Squares along each side of the ground, two triangles each.
+        Number of squares along each side of the ground, with two triangles each.
     blades : int
-        How many blades of grass; 0 leaves the ground bare.
+        Number of blades of grass; 0 leaves the ground bare.
     seed : int, Generator or SeedSequence
-        Which hills and which grass.
+        Seed of the hills and of the grass.
 
     Returns
     -------

@@ -17,9 +17,9 @@ def diagonal_wall(boards: int = 800, angle: float = 45.0, layers: int = 4) -> li
     """Return a wall of long thin boards, turned in its own plane: at 45 degrees all of them lie diagonally.
 
     The wall is a square of 10 by 10 around the origin, across the z axis: layers of boards one behind the
-    other, upright and level by turns, each as long as the wall and with gaps as wide as the boards. At 0
-    degrees the boards fill their bounding boxes; turned, each fills a small part of it, and the boxes of
-    neighbours overlap almost wholly.
+    other, alternately vertical and horizontal, each as long as the wall, with gaps as wide as the boards. At
+    0 degrees the boards fill their bounding boxes; rotated, each fills a small part, and the boxes of
+    neighbors overlap almost completely.
 
     Parameters
     ----------

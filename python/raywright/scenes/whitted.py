@@ -17,8 +17,8 @@ _SKY = (0.25, 0.45, 0.8)
 def whitted_spheres(width: int = 640, height: int = 480) -> tuple[Scene, Camera]:
     """Return a glass ball and a shiny ball over a checkerboard, and a camera.
 
-    After Whitted, "An Improved Illumination Model for Shaded Display" (1980). Render it with `Whitted`, whose
-    picture it is, or with `Path`.
+    After Whitted, "An Improved Illumination Model for Shaded Display" (1980). Render it with `Whitted`, as in
+    the paper, or with `Path`.
 
     Parameters
     ----------

@@ -16,20 +16,19 @@ from .shape import Shape
 class Box(Shape):
     """All points between two corners, borders included.
 
-    It is a solid: a ray that runs in a face or along an edge meets it. Other axes are a `transform`'s to
-    give.
+    It is a solid: a ray that runs in a face or along an edge meets it. For other axes, use a `transform`.
 
     Parameters
     ----------
     min, max : 3 floats
         The least and the greatest corner. They may be equal along an axis, and the box flat.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -39,7 +38,7 @@ class Box(Shape):
         If a coordinate of `min` is greater than that of `max`, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -47,8 +46,8 @@ class Box(Shape):
 
     Notes
     -----
-    The faces lie side by side in ``u`` and ``v``: three columns for those at right angles to x, y and z, and
-    two rows, for the lesser face and the greater.
+    The unit square of ``u`` and ``v`` has a rectangle for each face: three columns for the faces at right
+    angles to x, y and z, and two rows for the lesser and the greater face.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from .shape import Shape, segment, switch
 class Cylinder(Shape):
     """All points at one distance from a segment, between its ends' planes.
 
-    Hits are decided without error, along the axis and from afar too.
+    Hits are exact, also along the axis and from afar.
 
     Parameters
     ----------
@@ -27,12 +27,12 @@ class Cylinder(Shape):
     capped : bool
         True (the default) to close both ends by disks: then it is a solid, which a ray enters and leaves.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -42,7 +42,7 @@ class Cylinder(Shape):
         If the ends are the same, the radius is not greater than 0, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -50,9 +50,9 @@ class Cylinder(Shape):
 
     Notes
     -----
-    ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the way from the
-    base to the tip or, of a closed one, that from the middle of the base cap over its rim, up the side and in
-    to the middle of the tip cap, by length.
+    ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` is the distance
+    along the side from the base to the tip, as a share of the whole. For a closed shape it runs from the
+    middle of the base cap over its rim, up the side, and in to the middle of the tip cap.
 
     Examples
     --------

@@ -14,7 +14,7 @@ from .shape import Shape, direction
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Disk(Shape):
-    """All points of a plane between two distances from a centre, both included.
+    """A disk, or an annulus with a round hole; its rims are included.
 
     Parameters
     ----------
@@ -27,12 +27,12 @@ class Disk(Shape):
     inner_radius : float
         The distance of the rim of a round hole, at least 0 and less than `radius`; 0, the default, for none.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -42,7 +42,7 @@ class Disk(Shape):
         If a radius is out of its range, the normal has no length, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -50,8 +50,8 @@ class Disk(Shape):
 
     Notes
     -----
-    ``u`` is the angle about the normal, in turns; ``v`` the way from the rim, 0, inwards to the hole or the
-    centre, 1.
+    ``u`` is the angle about the normal, in turns; ``v`` runs from 0 at the rim to 1 at the hole or the
+    centre.
 
     Examples
     --------

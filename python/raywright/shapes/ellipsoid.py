@@ -16,7 +16,7 @@ from .shape import Shape
 class Ellipsoid(Shape):
     """A sphere scaled along the axes.
 
-    Other axes than x, y and z are a `transform`'s to give.
+    For other axes than x, y and z, use a `transform`.
 
     Parameters
     ----------
@@ -25,12 +25,12 @@ class Ellipsoid(Shape):
     semi_axes : 3 floats
         Half its width along x, y and z, each greater than 0.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -40,7 +40,7 @@ class Ellipsoid(Shape):
         If a semi-axis is not greater than 0, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -48,8 +48,8 @@ class Ellipsoid(Shape):
 
     Notes
     -----
-    ``u`` and ``v`` are those of the `Sphere` that it comes of. Its area is Carlson's elliptic integral R_G
-    (Carlson 1961), and it is sampled as that sphere is.
+    ``u`` and ``v`` are those of the `Sphere` before scaling. Its area is Carlson's elliptic integral R_G
+    (Carlson 1961), and as a light it is sampled like that sphere.
 
     Examples
     --------

@@ -18,24 +18,24 @@ class Implicit(Shape):
     """All points of a box where an expression in x, y and z is zero; outside is where it is positive.
 
     The expression is compiled, not run by Python. Along a ray its zeros are isolated by interval arithmetic
-    with outward rounding, so that none is skipped in the box (Moore, "Interval Analysis", 1966; Mitchell,
+    with outward rounding, so that none in the box is missed (Moore, "Interval Analysis", 1966; Mitchell,
     "Robust Ray Intersection with Interval Arithmetic", 1990).
 
     Parameters
     ----------
     expression : str
         Expression in Python's notation, with x, y, z, numbers, ``+ - * / **``, parentheses, pi, e, abs, sqrt,
-        exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, min and max. A power that is
-        no whole number written out is defined where its base is not negative.
+        exp, log, sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, pow, min and max. A power whose
+        exponent is not an integer literal is defined for a base of at least 0.
     min, max : 3 floats
         The least and the greatest corner of the box. The surface is cut open where the box ends.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
-        Rays are taken into the shape's own space and rounded there once.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
+        Rays are transformed to the shape's own space and rounded there once.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -54,9 +54,10 @@ class Implicit(Shape):
 
     Notes
     -----
-    Values that float64 cannot tell from zero count as zero: roots closer together than rounding are one,
-    which is touched. A stretch along which the expression is zero is hit once, where it begins. A pole or a
-    jump is no root. After some thousand intervals a line is accepted as known so far, so no expression hangs.
+    Values that float64 cannot tell from zero count as zero: two roots closer than rounding count as one
+    tangent hit. A stretch of a ray along which the expression is zero is hit once, at its start. A pole or a
+    jump is not a root. After some thousand intervals the roots found so far are returned, so no expression
+    hangs.
 
     ``u`` and ``v`` are the position in the box along two axes: those that follow the axis nearest to the
     normal, in the order x, y, z, x. `area` is measured by many thousand lines, to about a thousandth.

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Mesh:
-    """A mesh of triangles. All arrays are read-only: copies, unless they cannot be written to anyway.
+    """A mesh of triangles. All arrays are read-only; arrays that are read-only already are not copied.
 
     Parameters
     ----------
@@ -35,7 +35,8 @@ class Mesh:
         Corners. float32 and float64 are kept as they are, other real types become float64. NaN and infinity
         are allowed: faces that use them are left out, with a warning, when the scene is compiled.
     faces : (F, 3) integer array
-        Indices of three vertices a face; kept as uint32. The normal points to where they turn anticlockwise.
+        Indices of three vertices a face; kept as uint32. Seen from the side that the normal points to, they
+        run anticlockwise.
     normals : (V, 3) array, optional
         Shading normals, one a vertex.
     uv : (V, 2) array, optional
@@ -46,8 +47,8 @@ class Mesh:
         Radiance in W·sr⁻¹·m⁻² that leaves the side of the geometric normal: one number, or red, green and
         blue. None, the default, for a mesh that does not shine.
     colors : (V, 3) array, optional
-        Linear red, green and blue, one colour a vertex, each between 0 and 1; a material shows them where it
-        has `VertexColors`.
+        Linear red, green and blue, one colour a vertex, each between 0 and 1; the texture `VertexColors`
+        shows them.
     name : str, optional
         Name that `Hits.names` returns.
     vertex_attributes : dict of (V, ...) arrays, optional
@@ -56,7 +57,7 @@ class Mesh:
         Values of faces by name; `Hits.interpolate` reads them where no vertex attribute has the name.
     cells : (F,) integer array, optional
         Number of the cell that each face is part of, such as the polygon that was cut into triangles;
-        `Hits.cell` tells it. None if each face is a cell.
+        `Hits.cell` returns it. None if each face is a cell.
 
     Raises
     ------
@@ -142,20 +143,20 @@ class Mesh:
         Parameters
         ----------
         source : object
-            All that a `Scene` makes meshes of: a path; a mesh of trimesh, pyvista, VTK, Open3D, meshio,
-            manifold3d or Blender; a shape of CadQuery or build123d; a ``(vertices, faces)`` pair of arrays,
-            tensors or lists of rows; a list of these, or a dict by name. Several meshes are joined, with the
-            attributes that all have.
+            Everything that a `Scene` accepts as meshes: a path; a mesh of trimesh, pyvista, VTK, Open3D,
+            meshio, manifold3d or Blender; a shape of CadQuery or build123d; a ``(vertices, faces)`` pair of
+            arrays, tensors or lists of rows; a list of these, or a dict by name. Several meshes are joined,
+            with the attributes that all have.
         tolerance : float, optional
-            Distance that triangles keep to the curved faces of CAD shapes, in their unit, as far as Open
-            CASCADE does: it may be twice that in a few places, such as poles of spheres. A thousandth of the
-            diagonal of the shape's box if not given.
+            Maximum distance of triangles from the curved faces of CAD shapes, in their unit. Open CASCADE may
+            exceed it twofold in a few places, such as poles of spheres. A thousandth of the diagonal of the
+            shape's box if not given.
 
         Returns
         -------
         Mesh
-            Its `cells` are those of `source`, if they are other than its faces: polygons, volume cells under
-            the surface, faces of a CAD shape.
+            Its `cells` are those of `source`, if they differ from the faces: polygons, volume cells under the
+            surface, faces of a CAD shape.
 
         Raises
         ------
@@ -276,10 +277,10 @@ class Mesh:
         Parameters
         ----------
         path : path
-            Its suffix says how. ``.ply`` holds everything but the material: float64 as it is, attributes as
-            properties by name (those with more than one number a row as ``name_0``, ``name_1``, ...), and
-            `cells` as the face property "cell". ``.vtp`` and ``.vtk`` hold the data of `to_pyvista`.
-            ``.glb``, ``.obj``, ``.off`` and ``.stl`` hold no attributes.
+            Its suffix sets the format. ``.ply`` holds everything but the material: float64 as it is,
+            attributes as properties by name (those with more than one number a row as ``name_0``, ``name_1``,
+            ...), and `cells` as the face property "cell". ``.vtp`` and ``.vtk`` hold the data of
+            `to_pyvista`. ``.glb``, ``.obj``, ``.off`` and ``.stl`` hold no attributes.
 
         Raises
         ------
@@ -310,7 +311,7 @@ class Mesh:
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
-        """Least and greatest corner of the finite vertices in use, (2, 3) float64; None without any."""
+        """Least and greatest corner of the finite vertices of faces, (2, 3) float64; None without any."""
         points = self.used_vertices()
         return np.stack([points.min(axis=0), points.max(axis=0)]) if len(points) else None
 
@@ -341,8 +342,8 @@ class Mesh:
     def transformed(self, matrix: ArrayLike) -> Mesh:
         """Return the mesh moved by an affine matrix, computed in float64.
 
-        A matrix that mirrors also turns every face round (its second and third corner change places), so that
-        outside stays outside.
+        A mirroring matrix also swaps the second and third corner of every face, so normals still point
+        outside.
 
         Parameters
         ----------

@@ -29,12 +29,12 @@ class Paraboloid(Shape):
     capped : bool
         True to close the rim by a disk; False by default.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -44,7 +44,7 @@ class Paraboloid(Shape):
         If apex and tip are the same, the radius is not greater than 0, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -53,8 +53,8 @@ class Paraboloid(Shape):
     Notes
     -----
     ``u`` is the angle about the axis, in turns, anticlockwise as seen from the tip; ``v`` the distance from
-    the axis as a share of the rim's. If it is closed, that is the first half of ``v``, and the second goes on
-    from the rim to the cap's middle.
+    the axis as a share of the rim's. In a closed shape that is the first half of ``v``; the second half goes
+    from the rim to the middle of the cap.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from .shape import Shape, direction
 class Plane(Shape):
     """All points of a plane without end.
 
-    A scene with one has no bounds of its own; rays along it see it edge-on and pass.
+    It does not count in the bounds of a scene; rays along it pass.
 
     Parameters
     ----------
@@ -25,12 +25,12 @@ class Plane(Shape):
     normal : 3 floats
         Normal, towards the outer side; of any length but 0.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -40,7 +40,7 @@ class Plane(Shape):
         If the normal has no length, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -48,8 +48,8 @@ class Plane(Shape):
 
     Notes
     -----
-    ``u`` and ``v`` run along two unit axes at right angles to the normal (Duff et al. 2017), from the point
-    on, and begin again after each unit of length.
+    ``u`` and ``v`` run along two unit axes at right angles to the normal (Duff et al. 2017), start at the
+    point, and repeat after each unit of length.
 
     Examples
     --------

@@ -21,24 +21,24 @@ Ring = tuple[Triple, ...]
 class Polygon(Shape):
     """A flat face, convex or not, with or without holes.
 
-    Hits are decided by its edges without error, so nothing leaks where two polygons share an edge, or one and
-    a mesh in float64. The distance follows from the plane that is fitted to its points.
+    Hits are decided exactly by its edges, so no ray slips through an edge that two polygons share, or a
+    polygon and a float64 mesh. The distance follows from the plane that is fitted to its points.
 
     Parameters
     ----------
     outline : (N, 3) array
-        Its corners in order, at least 3, the last not repeating the first. The normal points to where they
-        turn anticlockwise.
+        Its corners in order, at least 3, the last not repeating the first. Seen from the side that the normal
+        points to, they run anticlockwise.
     holes : sequence of (N, 3) arrays
-        Outlines of its holes, either way round.
+        Outlines of its holes, in either orientation.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
-        Rays are taken into the shape's own space and rounded there once, all in the same way: nothing leaks
-        between polygons that share an edge and have equal transforms.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
+        Rays are transformed to the shape's own space and rounded there once, all in the same way, so no ray
+        slips between polygons that share an edge and have equal transforms.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -50,7 +50,7 @@ class Polygon(Shape):
         or a hole is not inside the outline and outside of the other holes. Tells which and where.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -59,7 +59,7 @@ class Polygon(Shape):
     Notes
     -----
     ``u`` runs along the first edge of the outline and ``v`` to the left of it, each from 0 to 1 over the
-    outline's extent. Seen exactly edge-on it is not hit.
+    outline's extent. Rays exactly in its plane do not hit it.
 
     Examples
     --------

@@ -16,8 +16,8 @@ from .shape import Shape
 class Sphere(Shape):
     """All points at one distance from a centre.
 
-    Hits are decided without error, and `t` is right to the last place, for small and distant spheres too: the
-    discriminant is that of the ray's closest approach (Haines et al., "Precision Improvements for Ray/Sphere
+    Hits are exact, and `t` is correct to the last place, also for small and distant spheres: the discriminant
+    is that of the ray's closest approach (Haines et al., "Precision Improvements for Ray/Sphere
     Intersection", 2019).
 
     Parameters
@@ -25,14 +25,14 @@ class Sphere(Shape):
     center : 3 floats
         Its centre.
     radius : float
-        The distance of all points from it, greater than 0.
+        Distance of the surface from the center, greater than 0.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Hits are exact for the given matrix, not for a rounded inverse.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -42,7 +42,7 @@ class Sphere(Shape):
         If the radius is not greater than 0, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -51,8 +51,8 @@ class Sphere(Shape):
     Notes
     -----
     ``u`` is the longitude about +z from +x on, in turns; ``v`` the latitude, from 0 at the pole on -z to 1 at
-    the pole on +z. Tangent rays are hits, but no crossings. It is sampled uniformly in the cone that it fills
-    as seen from outside, and in all directions from inside.
+    the pole on +z. A tangent ray is a hit, but not a crossing. As a light, it is sampled uniformly in the
+    cone of directions that it fills, or from inside in all directions.
 
     Examples
     --------

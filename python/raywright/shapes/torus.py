@@ -16,8 +16,8 @@ from .shape import Shape, direction
 class Torus(Shape):
     """All points at one distance from a circle: a ring, or a horn.
 
-    No root of its quartic is skipped: they are isolated by its critical points, with 32 digits. A line that
-    passes the tube within 1e-28 of the major radius of touching it touches it.
+    No root of its quartic is missed: critical points isolate the roots, with 32 digits. A line that misses
+    the tube by less than 1e-28 of the major radius touches it.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ class Torus(Shape):
         The circle's radius and the distance from it, each from 1e-140 to 1e140. The minor one is at most the
         major one; where they are equal, the surface touches itself in the centre.
     transform : (4, 4) array, optional
-        An affine matrix that acts on column vectors (x, y, z, 1), as from the shape's own space to the world.
-        Rays are taken into the shape's own space and rounded there once.
+        An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
+        Rays are transformed to the shape's own space and rounded there once.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
-        Radiance in W·sr⁻¹·m⁻² that leaves the outer side; None, the default, for a shape that does not shine.
+        Radiance that the outer side emits, in W·sr⁻¹·m⁻²; None, the default, for a shape without emission.
     name : str, optional
         Name that `Hits.names` returns.
 
@@ -45,7 +45,7 @@ class Torus(Shape):
         itself, the axis has no length, or a number is not finite.
         If the transform is not a finite affine (4, 4) matrix, or has no inverse.
     TypeError
-        If a number or a material is something else.
+        If an argument has another type.
 
     See Also
     --------
@@ -54,8 +54,7 @@ class Torus(Shape):
     Notes
     -----
     ``u`` is the angle about the axis, in turns; ``v`` that about the tube, from the outermost circle towards
-    where the axis points. A line that touches it is a hit, and crosses nothing where all crossings are asked
-    for.
+    where the axis points. A tangent ray is a hit, but not a crossing.
 
     Examples
     --------

@@ -23,7 +23,7 @@ def weld_tolerance(weld: Weld) -> float | None:
     ValueError
         If it is a text but "auto", or negative or not finite.
     TypeError
-        If it is no number.
+        If it is not a number.
     """
     if weld is None or weld is False:
         return 0.0

@@ -21,22 +21,22 @@ def planck(wavelengths: NDArray[np.float64], kelvin: float) -> NDArray[np.float6
 
 @dataclass(frozen=True, init=False, repr=False)
 class Blackbody(Spectrum):
-    """The light of a black body by its temperature (Planck, 1900), with a given luminance.
+    """The spectrum of a black body at a temperature (Planck 1900), scaled to a given luminance.
 
     Parameters
     ----------
     kelvin : float
-        Its temperature, from 500: some 1900 for a candle, 2800 for a light bulb, 5800 for the sun.
+        Temperature in kelvin, at least 500: about 1900 for a candle, 2800 for a light bulb, 5800 for the sun.
     luminance : float
-        Luminance, at least 0; 1 is that of white light of (1, 1, 1). The physical radiance of such a body is
-        `radiance`; few scenes use it.
+        Luminance, at least 0; 1 is the luminance of white light, (1, 1, 1). `radiance` returns the physical
+        radiance instead.
 
     Raises
     ------
     ValueError
-        If `kelvin` is below 500, where nothing is seen, or a number is not finite.
+        If `kelvin` is below 500, where nothing is visible, or a number is not finite.
     TypeError
-        If one is no number.
+        If an argument is not a number.
 
     See Also
     --------

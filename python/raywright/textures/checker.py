@@ -13,7 +13,7 @@ from .transform import Transform, UvTransform, placed
 
 @dataclass(frozen=True, init=False)
 class Checker(Texture):
-    """Unit squares, or cubes, of two kinds in turn. Detail finer than a pixel is averaged.
+    """A checkerboard of unit squares, or cubes. Detail finer than a pixel is averaged.
 
     Parameters
     ----------
@@ -21,14 +21,14 @@ class Checker(Texture):
         Values of the cells; the one at the lower left is `a`.
     transform : UvTransform, ObjectTransform or float, optional
         Map to the texture: squares in texture coordinates, or cubes in the space of the shape. A number is
-        how many squares there are to a unit of texture coordinates.
+        the number of squares per unit of texture coordinates.
 
     Raises
     ------
     ValueError
         If a number is not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -36,8 +36,8 @@ class Checker(Texture):
 
     Notes
     -----
-    A flat surface that lies exactly between two layers of cubes shows one or the other as rounding has it:
-    an offset of the transform puts it within one.
+    On a flat surface exactly between two layers of cubes, rounding decides which layer shows; an offset in
+    the transform avoids this.
 
     Examples
     --------
@@ -66,5 +66,5 @@ class Checker(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return either(self.a, self.b)

@@ -40,22 +40,22 @@ class FBm(Texture):
     a, b : float, 3 floats or Texture
         Values where the sum is -1 or less, and where it is 1 or more.
     transform : ObjectTransform, UvTransform or float, optional
-        Map to the texture, as for `Noise`: the coarsest has spots about a unit in size.
+        Map to the texture, as for `Noise`: the coarsest noise has spots of about unit size.
     octaves : int
         Number of noises, 1 to 32.
     lacunarity : float
         Ratio of frequencies of successive noises, above 1 and at most 16.
     gain : float
-        How many times as strong, 0 to 1.
+        Ratio of amplitudes of successive noises, 0 to 1.
     seed : int, Generator or SeedSequence
-        Which of all noises, 0 to 2^32 - 1.
+        Seed of the noise, 0 to 2^32 - 1.
 
     Raises
     ------
     ValueError
         If a number is not finite or out of range.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -95,5 +95,5 @@ class FBm(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return either(self.a, self.b)

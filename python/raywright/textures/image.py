@@ -29,15 +29,16 @@ class ImageTexture(Texture):
     ----------
     image : (H, W), (H, W, C) array, or path
         Rows from the top, of 1 to 4 channels: a grey, grey and alpha, red, green and blue, or these and
-        alpha. uint8 is kept as it is, float32 too; uint16 and other floats become float32. A path may be of a
-        PNG, an EXR, an NPY or any other picture that Pillow reads.
+        alpha. uint8 is kept as it is, float32 too; uint16 and other floats become float32. A path names a
+        PNG, EXR, NPY or any other picture that Pillow reads.
     linear : bool
-        True if integers are linear; if not, they are sRGB and decoded. Floats, and alpha, always are.
+        True if integers are linear values; otherwise they are decoded from sRGB. Floats and alpha are always
+        linear.
     channel : {"r", "g", "b", "a"}, optional
-        The one that counts, where it is a number that is asked for; all if not given.
+        Channel to use where a single number is needed; all if not given.
     filter : {"trilinear", "bilinear", "nearest"}
         "trilinear" averages detail finer than a pixel, from a pyramid of smaller copies (Williams, "Pyramidal
-        Parametrics", 1983); "bilinear" goes evenly from point to point, and "nearest" not at all.
+        Parametrics", 1983); "bilinear" interpolates between texels, and "nearest" takes the nearest one.
     wrap : {"repeat", "clamp", "mirror"}, or two of them
         Extension beyond the edges, along both axes or along u and along v.
     transform : UvTransform or float, optional
@@ -51,10 +52,10 @@ class ImageTexture(Texture):
     Raises
     ------
     ValueError
-        If the array is empty or of another shape, a number is not finite, a channel is missing, or a choice
-        is none.
+        If the array is empty or of another shape, a number is not finite, a channel is missing, or an option
+        is unknown.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
     FileNotFoundError
         If the file is missing.
 
@@ -129,7 +130,7 @@ class ImageTexture(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return self._range
 
     @cached_property
@@ -140,7 +141,7 @@ class ImageTexture(Texture):
 
     @property
     def decoded(self) -> bool:
-        """True if the channels in use are sRGB, to be decoded."""
+        """True if the channels in use are decoded from sRGB."""
         return self.image.dtype == np.uint8 and not self.linear and self.channel != "a"
 
     def _ends(self) -> list[NDArray[np.float64]]:

@@ -14,7 +14,7 @@ from .transform import ObjectTransform, Transform, placed
 
 @dataclass(frozen=True, init=False)
 class Marble(Texture):
-    """Veins: soft bands across the first axis, one each unit, bent by noise.
+    """Marble veins: soft bands at right angles to the first axis, one per unit, distorted by noise.
 
     After Perlin ("An Image Synthesizer", 1985). Detail finer than a pixel is averaged.
 
@@ -23,8 +23,8 @@ class Marble(Texture):
     a, b : float, 3 floats or Texture
         Values between the bands, and within them.
     transform : ObjectTransform, UvTransform or float, optional
-        Map to the texture: from the space of the shape, or from texture coordinates. A number is how many
-        bands there are to a unit of the shape's space.
+        Map to the texture: from the space of the shape, or from texture coordinates. A number is the number
+        of bands per unit of the shape's space.
     distortion : float
         Displacement by noise, in units; 0 for none.
     octaves, lacunarity, gain, seed
@@ -35,7 +35,7 @@ class Marble(Texture):
     ValueError
         If a number is not finite or out of range.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -78,5 +78,5 @@ class Marble(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return either(self.a, self.b)

@@ -12,7 +12,7 @@ from .texture import Texture, Value, either, value
 
 @dataclass(frozen=True, init=False)
 class MixTexture(Texture):
-    """Two values, weighed by a third: ``a (1 - amount) + b amount``, channel by channel.
+    """A blend of two values: ``a (1 - amount) + b amount``, channel by channel.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class MixTexture(Texture):
     ValueError
         If a number is not finite, or `amount` is not between 0 and 1.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -54,5 +54,5 @@ class MixTexture(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return either(self.a, self.b)

@@ -15,26 +15,26 @@ SEEDS = 2**32 - 1
 
 @dataclass(frozen=True, init=False)
 class Noise(Texture):
-    """Smooth random spots about a unit in size (Perlin, "Improving Noise", 2002).
+    """Perlin noise: smooth random spots of about unit size (Perlin, "Improving Noise", 2002).
 
     Detail finer than a pixel is averaged.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        Values where the noise is least, and where it is greatest; half of each where it is 0.
+        Values at the minimum and at the maximum of the noise; their mean where it is 0.
     transform : ObjectTransform, UvTransform or float, optional
-        Where they lie: in the space of the shape, or in texture coordinates. A number is how many there are
-        to a unit of the shape's space.
+        Map to the texture: from the space of the shape, or from texture coordinates. A number is the number
+        of spots per unit of the shape's space.
     seed : int, Generator or SeedSequence
-        Which of all noises, 0 to 2^32 - 1.
+        Seed of the noise, 0 to 2^32 - 1.
 
     Raises
     ------
     ValueError
         If a number is not finite, or the seed is out of range.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -67,5 +67,5 @@ class Noise(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return either(self.a, self.b)

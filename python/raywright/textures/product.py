@@ -24,7 +24,7 @@ class ProductTexture(Texture):
     ValueError
         If a number is not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -45,7 +45,7 @@ class ProductTexture(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         products = [
             tuple(x * y for x, y in zip(i, j, strict=True)) for i in ends(self.a) for j in ends(self.b)
         ]

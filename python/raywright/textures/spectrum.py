@@ -18,10 +18,9 @@ class Spectrum(Texture):
     """A spectrum of reflectance or of light: linear between its values, and 0 beyond them.
 
     Every color parameter also accepts a spectrum. A scene with one is rendered by wavelength (see
-    `Scene.plan`). As a reflectance it is a share of light; as a radiance, intensity or irradiance, light
-    itself, in the unit of that for each of red, green and blue: a value of 1 at all wavelengths has a
-    luminance of 1, like a white of (1, 1, 1). Such an even light is reddish, since white is daylight (CIE
-    D65).
+    `Scene.plan`). As a reflectance, its values are shares of light. As a radiance, intensity or irradiance
+    they have the unit of a color channel: a value of 1 at all wavelengths has the luminance of the white (1,
+    1, 1), 1. Such a constant spectrum looks reddish, because white is daylight (CIE D65).
 
     Parameters
     ----------
@@ -35,7 +34,7 @@ class Spectrum(Texture):
     ValueError
         If they are not as many, wavelengths do not rise, or something is not finite or negative.
     TypeError
-        If something is no number.
+        If an argument is not a number.
 
     See Also
     --------
@@ -74,7 +73,7 @@ class Spectrum(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest of its values, for red, green and blue alike."""
+        """Least and greatest value, the same for red, green and blue."""
         low, high = min(self.values), max(self.values)
         return (low, low, low), (high, high, high)
 
@@ -107,7 +106,7 @@ class Spectrum(Texture):
 
     @property
     def rgb(self) -> Triple:
-        """The linear red, green and blue (Rec. 709) of it as light, seen by the standard observer (CIE 1931).
+        """Linear red, green and blue (Rec. 709) of the spectrum as light (CIE 1931 observer).
 
         For colors outside the gamut, the negative component is 0.
         """
@@ -115,12 +114,12 @@ class Spectrum(Texture):
 
     @property
     def reflected_rgb(self) -> Triple:
-        """The linear red, green and blue (Rec. 709) of it as reflectance, in daylight (CIE D65)."""
+        """Linear red, green and blue (Rec. 709) of the spectrum as a reflectance, in daylight (CIE D65)."""
         return self._rgb(emits=False)
 
     @property
     def luminance(self) -> float:
-        """The luminance of it as light: 1 for a value of 1 at all wavelengths."""
+        """Luminance of the spectrum as light: 1 for a value of 1 at all wavelengths."""
         return _core.spectrum_luminance(self._rows())
 
     def __mul__(self, factor: float) -> Spectrum:
@@ -143,7 +142,7 @@ def colour_or_spectrum(name: str, value: ArrayLike | Spectrum) -> Triple | Spect
     Raises
     ------
     ValueError
-        If a number is negative or not finite, or there are not 1 or 3 of them.
+        If a number is negative or not finite, or there are neither 1 nor 3 of them.
     TypeError
         If they are not numbers.
     """

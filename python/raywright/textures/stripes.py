@@ -13,24 +13,24 @@ from .transform import Transform, UvTransform, placed
 
 @dataclass(frozen=True, init=False)
 class Stripes(Texture):
-    """Stripes across the first axis, one each unit. Detail finer than a pixel is averaged.
+    """Stripes at right angles to the first axis, one per unit. Detail finer than a pixel is averaged.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
         Values between the stripes, and within them.
     fraction : float
-        Share of each unit that a stripe takes, at its end: between 0 and 1.
+        Width of a stripe, as a share of the unit, between 0 and 1. The stripe is at the end of its unit.
     transform : UvTransform, ObjectTransform or float, optional
-        Map to the texture: from texture coordinates, or from the space of the shape. A number is how many
-        stripes there are to a unit of texture coordinates.
+        Map to the texture: from texture coordinates, or from the space of the shape. A number is the number
+        of stripes per unit of texture coordinates.
 
     Raises
     ------
     ValueError
         If a number is not finite, or `fraction` is not between 0 and 1.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -65,5 +65,5 @@ class Stripes(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return either(self.a, self.b)

@@ -24,7 +24,7 @@ class Texture:
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         raise NotImplementedError
 
     def _set(self, **values: Any) -> None:
@@ -51,7 +51,8 @@ def value(
     Raises
     ------
     ValueError
-        If a number, or the range of a texture, is not finite or not allowed, or there are not 1 or 3 of them.
+        If a number, or the range of a texture, is not finite or not allowed, or there are neither 1 nor 3 of
+        them.
     TypeError
         If they are not numbers.
     """

@@ -17,7 +17,7 @@ Row4: TypeAlias = tuple[float, float, float, float]
 
 @dataclass(frozen=True, init=False)
 class UvTransform:
-    """An affine map from a surface's texture coordinates to a texture's: scaled, then turned, then moved.
+    """An affine map of texture coordinates: scale, then rotation, then translation.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class UvTransform:
     offset : 2 floats
         Translation of coordinates.
     matrix : (2, 3) array, optional
-        All of it at once: acts on column vectors (u, v, 1). The others then do not count.
+        The whole map as a matrix that acts on column vectors (u, v, 1); the other arguments are then ignored.
 
     Attributes
     ----------
@@ -77,10 +77,10 @@ class UvTransform:
 
 @dataclass(frozen=True, init=False)
 class ObjectTransform:
-    """An affine map from the space of a shape to that of a texture which fills it.
+    """An affine map from the space of a shape to that of a solid texture.
 
-    The shape is as if cut from a block of the texture. In an instance the space is that of the instance's
-    shapes, so every copy is cut alike.
+    The shape looks cut from a block of the texture. In an instance the space is that of the instance's
+    shapes, so all copies look alike.
 
     Parameters
     ----------
@@ -89,7 +89,8 @@ class ObjectTransform:
     offset : 3 floats
         Translation of points, in units of the texture.
     matrix : (3, 4) or (4, 4) array, optional
-        All of it at once: acts on column vectors (x, y, z, 1). The others then do not count.
+        The whole map as a matrix that acts on column vectors (x, y, z, 1); the other arguments are then
+        ignored.
 
     Attributes
     ----------

@@ -27,5 +27,5 @@ class VertexColors(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)

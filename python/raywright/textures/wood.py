@@ -14,17 +14,17 @@ from .transform import ObjectTransform, Transform, placed
 
 @dataclass(frozen=True, init=False)
 class Wood(Texture):
-    """Rings about the third axis, one each unit of the radius, bent by noise.
+    """Wood grain: rings around the third axis, one per unit of radius, distorted by noise.
 
     After Perlin ("An Image Synthesizer", 1985). Detail finer than a pixel is averaged.
 
     Parameters
     ----------
     a, b : float, 3 floats or Texture
-        Early wood, and the late wood that a ring darkens to.
+        Colors of early wood, and of the late wood at the end of each ring.
     transform : ObjectTransform, UvTransform or float, optional
-        Map to the texture: from the space of the shape, or from texture coordinates. A number is how many
-        rings there are to a unit of the shape's space.
+        Map to the texture: from the space of the shape, or from texture coordinates. A number is the number
+        of rings per unit of the shape's space.
     distortion : float
         Displacement by noise, in units; 0 for none.
     octaves, lacunarity, gain, seed
@@ -35,7 +35,7 @@ class Wood(Texture):
     ValueError
         If a number is not finite or out of range.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -77,5 +77,5 @@ class Wood(Texture):
 
     @property
     def range(self) -> tuple[Triple, Triple]:
-        """The least and the greatest that it may be, in red, green and blue."""
+        """Bounds of its values: the least and the greatest red, green and blue."""
         return either(self.a, self.b)

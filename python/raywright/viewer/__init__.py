@@ -71,16 +71,16 @@ class Viewer:
 
     @property
     def rendering(self) -> bool:
-        """True while a render is going on: not without viewers, nor when the picture is finished."""
+        """True during a render; False without open pages, and after the picture is finished."""
         return self._session.rendering
 
     @property
     def camera(self) -> AnyCamera:
-        """The current camera; it prints as the expression that makes it."""
+        """The current camera; its repr is the expression that makes it."""
         return self._session.camera
 
     def show(self, integrator: AnyIntegrator) -> None:
-        """Show the scene by another integrator, such as the next state of a radiosity solution.
+        """Switch to another integrator, such as the next state of a radiosity solution.
 
         Parameters
         ----------
@@ -107,10 +107,10 @@ class Viewer:
             self._widget.again()
 
     def widget(self) -> ViewerWidget:
-        """Return the viewer as a widget for notebooks, which shows itself where a cell ends with it.
+        """Return the viewer as a widget for notebooks.
 
-        It is the page, by the notebook's own messages: it works with a kernel on another machine, too.
-        Nothing is rendered while it is not seen.
+        It is the page, connected by the notebook's own messages, so it also works with a kernel on another
+        machine. Nothing is rendered while it is not visible.
 
         Returns
         -------
@@ -141,7 +141,7 @@ class Viewer:
         return self._widget
 
     def wait(self) -> None:
-        """Wait until it is closed, or Ctrl-C is pressed, which closes it.
+        """Wait until the viewer is closed, or close it on Ctrl-C.
 
         See Also
         --------
@@ -225,40 +225,40 @@ def view(
     port: int = 0,
     open: bool = False,
 ) -> Viewer:
-    """Show a scene in the browser, or in a notebook's cell, and let the mouse move the camera.
+    """Show a scene in the browser, or in a notebook cell, with a camera moved by the mouse.
 
-    The page is served to this machine alone, as long as the process lives or until the viewer is closed. If
-    the browser has WebGPU, and the scene is of meshes, the page draws by itself: a ray and its shadow a pixel
-    while the camera moves, and paths, more and more of them, when it stands. The core renders unsupported
-    materials, lights and integrators once the camera stands. Elsewhere all pictures are the core's: a small
-    one comes at once and a better one after it. Either way the error of the picture is shown. The key g
-    changes between both. While no page is open nothing is rendered. In a notebook, the viewer shows itself
-    where a cell ends with it (`Viewer.widget`).
+    The page is served to this machine only, until the process ends or the viewer is closed. With WebGPU, the
+    page draws scenes of meshes itself: one ray and one shadow ray a pixel while the camera moves, then more
+    and more paths. For materials, lights and integrators that the page does not support, the core renders
+    once the camera is still. Without WebGPU the core renders all pictures: a small one at once, then a better
+    one. The error of the picture is always shown. The key g switches between page and core. Nothing is
+    rendered while no page is open. A notebook cell that ends with the viewer shows it (`Viewer.widget`).
 
     Parameters
     ----------
     scene, integrator, samples, error, seconds, seed, threads, adaptive, clamp, sampler, filter
         As in `render`. If no limit is given, it renders to a relMSE of 1e-4.
     camera : Camera or another kind, optional
-        Camera at the start. If not given, all of the scene is in the picture, and a scene without any light
-        is lit as by a studio's lamps.
+        Camera at the start. If not given, the scene is framed; a scene without light is lit as in
+        `scenes.studio`.
     exposure, tone
         Exposure and tone of pictures, as in `Image.save`. The page changes the exposure without a new render.
     fit : bool
-        True to render as many pixels as the window has room for, in the shape of the camera's picture, False
-        for as many as the camera has. `Viewer.camera` keeps its own size.
+        True to fill the window, in the proportions of the camera's picture; False for the camera's number of
+        pixels. `Viewer.camera` keeps its own size.
     boxes : int, optional
-        Level of the accelerator's boxes to draw over the picture, 0 for the root; of a level of more than
-        20,000 the largest. The keys b and B go a level deeper and back. `Scene.tree_boxes` gives the boxes.
+        Level of the accelerator's boxes to draw over the picture, 0 for the root; at most the 20,000 largest
+        are drawn. The keys b and B go a level deeper and back. `Scene.tree_boxes` gives the boxes.
     port : int
         Port of the server; any free port if 0.
     open : bool
-        Whether to open a browser.
+        True to open a browser.
 
     Returns
     -------
     Viewer
-        Its `url` is where to look; ``viewer.wait()`` waits until Ctrl-C, ``viewer.close()`` ends it.
+        Its `url` is the address of the page; ``viewer.wait()`` waits until Ctrl-C, ``viewer.close()`` ends
+        it.
 
     Raises
     ------

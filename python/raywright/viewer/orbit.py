@@ -58,7 +58,7 @@ class View:
         ValueError
             If it is no mapping, or has another name in it, or a number is out of its range.
         TypeError
-            If something is not a number.
+            If an argument is not a number.
         """
         if not isinstance(told, Mapping):
             raise ValueError(f"view must be an object, got {type(told).__name__}")

@@ -52,7 +52,7 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
     Warns
     -----
     RuntimeWarning
-        Once of each kind of thing in the file that is not shown as it says.
+        Once for each kind of feature in the file that is ignored or approximated.
 
     Notes
     -----

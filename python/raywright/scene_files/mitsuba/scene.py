@@ -55,10 +55,10 @@ def from_mitsuba(
         A scene as ``mitsuba.load_dict`` takes it, or an XML file. Transforms may be nested lists, arrays, or
         Mitsuba's own objects; Mitsuba is not needed.
     folder : path, optional
-        Folder of a dict's files; the current one if not given. Those of an XML file are where it is, or in
-        this folder if they are not there.
+        Folder of the files of a dict; the current one if not given. Files of an XML scene are searched beside
+        it, then in this folder.
     sensor : int
-        Index of the scene's sensor.
+        Index of the sensor to use.
     parameters : dict, optional
         Values of ``$name`` in an XML file, in place of its defaults: numbers, texts or bools by name.
     weld : "auto", float or None
@@ -67,15 +67,15 @@ def from_mitsuba(
     Returns
     -------
     RenderSetup
-        The scene, with the camera, the integrator and the settings that it has.
+        The scene, with its camera, integrator and settings.
 
     Raises
     ------
     FileNotFoundError
         If a file is missing.
     ValueError
-        If something is not supported, or is not as it must be (the error gives plugin or line), or `weld` is
-        negative or not finite.
+        If something is not supported, or is malformed (the error gives plugin or line), or `weld` is negative
+        or not finite.
     TypeError
         If `scene` is no dict and no path, or `sensor` is no integer.
 

@@ -153,7 +153,7 @@ class Sampling(NamedTuple):
     samples : int
         Of a pixel.
     seed : int
-        Picks the random numbers.
+        Seed of the random numbers.
     unnamed : str, optional
         Why none is named although there is one.
     """

@@ -41,7 +41,7 @@ def value(
     plugin : Plugin
         Plugin with the parameter.
     name : str
-        Its name.
+        Name of the parameter.
     default : float or 3 floats
         If it is not given.
     uv : Uv

@@ -47,7 +47,7 @@ def shade(plugin: Plugin, name: str, default: float | Triple, emits: bool = Fals
     plugin : Plugin
         Plugin with the parameter.
     name : str
-        Its name.
+        Name of the parameter.
     default : float or 3 floats
         If it is not given.
     emits : bool

@@ -56,7 +56,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     Warns
     -----
     RuntimeWarning
-        Once of each kind of thing in the file that is not shown as it says.
+        Once for each kind of feature in the file that is ignored or approximated.
 
     Notes
     -----
