@@ -24,7 +24,7 @@ class CameraQueries(RayQueries):
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> Hits:
-        """Find the shape, face, place and distance at a pixel, or at many.
+        """Find the hit at a pixel, or at many: shape, face, position and distance.
 
         Parameters
         ----------
@@ -35,8 +35,8 @@ class CameraQueries(RayQueries):
             picture, (width - 1, height - 1) its lower right. For points between, such as mouse clicks in
             floating point, use ``intersect(*camera.rays_through(points))``.
         offsets : (2,) or (..., 2) array
-            Place in the pixel, for all or for each, as in `Camera.rays`: (0, 0) is its upper left, (1, 1) its
-            lower right. The default is the centre.
+            Position within the pixel, for all pixels or for each, as in `Camera.rays`: (0, 0) is its upper
+            left, (1, 1) its lower right. The default is the centre.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
@@ -92,15 +92,15 @@ class CameraQueries(RayQueries):
 
         Faces are projected into the picture (Catmull 1974), and tested exactly, as in `intersect`, against
         the rays of the pixels that they may cover. Parts of the picture with too many faces are traced
-        instead, and all of it is if there are more faces than a quarter of its pixels, something in the scene
-        is no mesh, or the camera is not a pinhole that stands still. ``report.first_hits`` measures the gain.
+        instead. The whole picture is traced if there are more faces than a quarter of its pixels, for curved
+        shapes, and for cameras other than a static pinhole. ``report.first_hits`` measures the gain.
 
         Parameters
         ----------
         camera : Camera or another kind
             Camera of the picture.
         offsets : (2,) or (height, width, 2) array
-            Place in the pixel, for all or for each, as in `Camera.rays`.
+            Position within the pixel, for all pixels or for each, as in `Camera.rays`.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float, optional

@@ -28,10 +28,10 @@ class ClosestPoints(SurfacePoints):
     shape_id : (...) int32
         Index in ``scene.shapes``; -1 for none.
     primitive_id : (...) int32
-        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
+        Face of that shape, 0 for a curved shape; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the closest point is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a curved shape, its own u and v.
 
     See Also
     --------

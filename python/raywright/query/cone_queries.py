@@ -23,8 +23,7 @@ class ConeQueries(Compilable):
     ) -> ConeFaces:
         """Find all faces that solid cones touch, the nearest first.
 
-        A face is touched if any point of it, its edges and corners included, is in the cone, its surface
-        included. There is no occlusion.
+        A cone touches a face if they have a common point, borders included. Occlusion is ignored.
 
         Parameters
         ----------
@@ -35,14 +34,14 @@ class ConeQueries(Compilable):
             ray.
         t_max : float or (...) array
             Maximum distance from the apex, inclusive, in the scene's unit whatever the length of the
-            direction. A cone then ends in a part of a sphere.
+            direction. A cone thus ends in a spherical cap.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
 
         Returns
         -------
         ConeFaces
-            Faces by cone, then distance, then (shape_id, primitive_id).
+            Faces in order of cone, then distance, then (shape_id, primitive_id).
 
         Raises
         ------
@@ -83,11 +82,11 @@ class ConeQueries(Compilable):
         t_max: ArrayLike = np.inf,
         threads: int | None = None,
     ) -> ConeCoverage:
-        """Compute the covered share of solid cones: the share of their directions that meet something.
+        """Compute the covered share of solid cones: the share of their directions that hit something.
 
         It is exact for meshes, whose faces hide parts of each other, and for one sphere (Tovchigrechko and
-        Vakser 2001). Beyond that, coverage behind a sphere counts by the share of the cone that the sphere
-        leaves, as if both were spread evenly (Amanatides 1984).
+        Vakser 2001). Otherwise, coverage behind a sphere is multiplied by the share of the cone that the
+        sphere leaves uncovered, as if both were spread evenly (Amanatides 1984).
 
         Parameters
         ----------
@@ -99,8 +98,8 @@ class ConeQueries(Compilable):
         Returns
         -------
         ConeCoverage
-            Solid angles and shares, (...) float64 each; 0 for cones with infinity or no direction, which
-            touch nothing, as rays of that kind do, and NaN for cones with NaN.
+            Solid angles and shares, (...) float64 each; 0 for cones with infinite values or without
+            direction, which touch nothing, and NaN for cones with NaN.
 
         Raises
         ------

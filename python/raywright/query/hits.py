@@ -20,21 +20,20 @@ from .surface_points import SurfacePoints, leading_shape, one_or_some
 class Hits(SurfacePoints):
     """The closest hit of each ray; every array begins with the leading shape of the rays.
 
-    Arrays of floats and bools belong to the caller. Arrays of integers are read-only, since further data is
-    looked up by them; computed results do not follow a change.
+    Arrays of floats and bools belong to the caller. Arrays of integers are read-only, because lookups use
+    them; results that were computed before would not change.
 
     Attributes
     ----------
     t : (...) float64
-        Distance in lengths of the ray's direction, so that the hit is at ``origin + t * direction``; inf for
-        a miss.
+        Distance in units of the direction's length: the hit is at ``origin + t * direction``; inf for a miss.
     shape_id : (...) int32
         Index in ``scene.shapes``; -1 for a miss.
     primitive_id : (...) int32
-        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
+        Face of that shape, 0 for a curved shape; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the hit is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a curved shape, its own u and v.
 
     See Also
     --------
@@ -76,7 +75,7 @@ class Hits(SurfacePoints):
         uv: NDArray[np.float64],
         instance_id: NDArray[np.int32] | None,
         compiled: _core.CompiledScene,
-    ) -> "Hits":
+    ) -> Hits:
         """Return hits as `__init__` makes them, in half the time."""
         hits = cls.__new__(cls)
         own = hits.__dict__

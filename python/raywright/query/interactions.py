@@ -111,9 +111,8 @@ class Interactions:
         Returns
         -------
         BsdfSamples
-            One direction for each ray, with all of its weight: the share of the light from there that comes
-            back along the ray, by Fresnel's law where that says. No weight and NaN where nothing is reflected
-            so.
+            One direction for each ray, with its weight: the share of light from there that is reflected along
+            the ray, by Fresnel's equations for glass. Weight 0 and NaN without specular reflection.
 
         See Also
         --------
@@ -134,8 +133,8 @@ class Interactions:
         Returns
         -------
         BsdfSamples
-            As in `reflected`, on the other side. Weights are those of radiance, which has the square of the
-            index of refraction in it.
+            As in `reflected`, on the other side. Weights are for radiance, and include the square of the
+            relative index of refraction.
 
         See Also
         --------
@@ -151,19 +150,19 @@ class Interactions:
         return BsdfSamples(*self._core.single(True))
 
     def evaluate(self, directions: ArrayLike) -> tuple[Floats, Floats]:
-        """Evaluate the scattering of light from some directions back along the rays.
+        """Evaluate the BSDF for light from given directions, scattered back along the rays.
 
         Parameters
         ----------
         directions : (N, 3) array
-            Unit directions that light comes from.
+            Unit directions towards the light.
 
         Returns
         -------
         value : (N, 3)
-            Scattering function times cosine; 0 for misses, and where all scattering has a single direction.
+            BSDF times cosine; 0 for misses, and for specular scattering.
         pdf : (N,)
-            The density, in solid angle, with which `sample` draws the direction.
+            The density, in solid angle, with which `sample_bsdf` draws the direction.
 
         See Also
         --------
@@ -180,12 +179,12 @@ class Interactions:
         return self._core.evaluate(vectors("directions", directions))
 
     def sample_bsdf(self, choice: Floats, u: Floats) -> BsdfSamples:
-        """Sample directions from the scattering at the points.
+        """Sample directions from the BSDF at the points.
 
         Parameters
         ----------
         choice : (N,) array
-            Numbers in [0, 1) that choose among kinds of scattering.
+            Numbers in [0, 1) that choose among lobes.
         u : (N, 2) array
             Pairs of numbers in (0, 1) for the direction.
 
@@ -244,12 +243,12 @@ class Interactions:
         return LightSamples(direction, weight, pdf, (origins, ways, most), self.rays.time)
 
     def light_pdf(self, before: Interactions) -> Floats:
-        """Return the density with which `light` would have sampled the emitters that the rays hit: (N,).
+        """Return the density of `sample_light` at the emitters that the rays hit: (N,).
 
         Parameters
         ----------
         before : Interactions
-            Surfaces that the rays leave, an entry a ray.
+            Surfaces that the rays leave, an entry for each ray.
 
         Returns
         -------
@@ -273,7 +272,7 @@ class Interactions:
         return self._core.light_pdf(before._core)
 
     def spawn_rays(self, directions: ArrayLike) -> Rays:
-        """Return rays that leave along some unit directions, (N, 3), without meeting the same surface.
+        """Return rays that leave in given unit directions, (N, 3), without hitting the same surface.
 
         Parameters
         ----------

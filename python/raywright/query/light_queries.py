@@ -14,15 +14,15 @@ class LightQueries(Compilable):
     """Queries of light at surfaces; the first one compiles the scene."""
 
     def interactions(self, rays: Rays) -> Interactions:
-        """Find the surface interaction of each ray: the hit, with its scattering and its light.
+        """Find the surface interaction of each ray: the hit, with its BSDF and emission.
 
-        It is for integrators written in Python (see `Integrator`): the result has the emission, and samples
-        scattering and light for the whole batch.
+        It serves integrators written in Python (see `Integrator`): the result has the emission, and samples
+        BSDFs and lights for the whole batch.
 
         Parameters
         ----------
         rays : Rays
-            Rays of unit direction, as an integrator is given them or `Interactions.spawn_rays` makes them.
+            Rays with unit directions, from the arguments of an integrator or from `Interactions.spawn_rays`.
 
         Returns
         -------
@@ -62,30 +62,29 @@ class LightQueries(Compilable):
         seed: SeedLike = 0,
         threads: int | None = None,
     ) -> Photons:
-        """Trace photons from the lights, and record them at each surface that they meet.
+        """Trace photons from the lights, and record them at each surface that they reach.
 
-        Paths start at lights, chosen by their power, at points by area and in directions by the cosine. They
-        are scattered from surface to surface as light is, until they leave the scene, are absorbed by
-        roulette, or have met `max_depth` surfaces. Absorption and scattering events in media count as
-        surfaces, and are recorded as well.
+        Paths start at lights chosen by power, at points uniform in area and in cosine-weighted directions.
+        Surfaces scatter them until they leave the scene, end by Russian roulette, or reach `max_depth`
+        surfaces. Absorption and scattering events in media count as surfaces, and are recorded as well.
 
         Parameters
         ----------
         count : int
-            Paths, 1 to 2**31 - 1. Each surface that one comes to is a photon of about 200 bytes.
+            Number of paths, 1 to 2**31 - 1. Each surface on a path gives a photon of about 200 bytes.
         max_depth : int, optional
-            The greatest number of surfaces that a path comes to, at least 1. No limit if not given.
+            Maximum number of surfaces on a path, at least 1. No limit if not given.
         roulette_depth : int
             Surfaces before Russian roulette begins, at least 0.
         seed : int, Generator or SeedSequence
-            Picks the random numbers, 0 to 2**64 - 1.
+            Seed of the random numbers, 0 to 2**64 - 1.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
 
         Returns
         -------
         Photons
-            In the order of the paths, and along each of the surfaces that it comes to.
+            In order of paths, and along each path.
 
         Raises
         ------

@@ -23,8 +23,8 @@ class MediumQueries(Compilable):
     ) -> NDArray[np.float64]:
         """Compute the optical depth of the media along each ray: the integral of their extinction.
 
-        Surfaces do not stop the rays; only the media that they enclose count, and the scene's own medium.
-        `occluded` tests for surfaces in the way.
+        Surfaces do not stop the rays: only media count, those inside shapes and that of the scene. `occluded`
+        tests for surfaces.
 
         Parameters
         ----------
@@ -34,8 +34,7 @@ class MediumQueries(Compilable):
         Returns
         -------
         (..., 3) float64
-            Of red, green and blue; 0 where there is nothing, and infinite along a ray without end in a medium
-            without end.
+            For red, green and blue; 0 without media, and infinite for an infinite ray in an infinite medium.
 
         Raises
         ------
@@ -72,9 +71,9 @@ class MediumQueries(Compilable):
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """Compute the share of light that media leave along each ray: exp(-`optical_depth`).
+        """Compute the transmittance of the media along each ray: exp(-`optical_depth`).
 
-        Surfaces do not stop the rays, as for `optical_depth`, which keeps its digits for tiny transmittances.
+        Surfaces do not stop the rays. For tiny transmittances, `optical_depth` is more accurate.
 
         Parameters
         ----------
@@ -84,7 +83,7 @@ class MediumQueries(Compilable):
         Returns
         -------
         (..., 3) float64
-            Of red, green and blue, from 0 to 1.
+            For red, green and blue, from 0 to 1.
 
         Raises
         ------

@@ -9,7 +9,7 @@ from .ray_batch import Floats, numbers
 
 
 def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
-    """Return the power heuristic's weight of samples of density `pdf`, beside a strategy of density `other`.
+    """Return the power heuristic's weight of a sample, from its densities by two techniques.
 
     The exponent is 2 (Veach and Guibas 1995); infinite densities get the weight 1, and 0 the weight 0.
 
@@ -21,7 +21,7 @@ def power_heuristic(pdf: ArrayLike, other: ArrayLike) -> Floats:
     Returns
     -------
     float64 array
-        Weights from 0 to 1; those of the two strategies add up to 1.
+        Weights from 0 to 1; those of the two techniques add up to 1.
 
     See Also
     --------

@@ -43,36 +43,36 @@ class RayQueries(Compilable):
             Rays, broadcast against each other; directions need not be unit. C-contiguous float32 and float64
             are read without a copy, other real types are converted to float64.
         t_min, t_max : float or (...) arrays
-            The part of the ray that counts, in lengths of its direction, both ends included.
+            Ends of the ray, in units of the direction's length, both included.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional
-            When the rays are asked, from 0 as the shutter opens, which it is if not given, to 1 as it closes:
-            instances that move are where they then are.
+            Time of the rays, from 0 (the default), as the shutter opens, to 1, as it closes; it sets the
+            position of moving instances.
         out : Hits or mapping of str to arrays, optional
-            An earlier answer, of this scene or another, to as many rays of the same leading shape. Its arrays
-            are written to and it is returned, so that a loop over batches allocates nothing; what it told
-            before is gone. Or arrays by name of field, such as ``{"t": distances}``, C-contiguous and of the
-            shape that the field has: of any float type for t and uv, int32 for numbers, bool for hit.
+            An earlier result, of any scene, for rays of the same leading shape. Its arrays are overwritten
+            and it is returned, so a loop over batches allocates nothing. Or arrays by field, such as ``{"t":
+            distances}``, C-contiguous and of the field's shape: any float type for t and uv, int32 for
+            indices, bool for hit.
         mask : (...) bool array, optional
             Rays to trace, broadcast to their leading shape; the others hit nothing.
         shapes : (S,) bool array, str or sequence of str, optional
-            Shapes that count, one bool for each of ``scene.shapes`` or their names: as in a scene of these
-            alone. An `Instance` counts as a whole.
+            Shapes to test: a bool for each of ``scene.shapes``, or names. The result is that of a scene of
+            these shapes only. An `Instance` counts as a whole.
         cull : {"back"}, optional
-            Leaves out what is met from behind, where the geometric normal goes along with the ray. Of
-            triangles that is decided exactly; of curved shapes and of copies by the normal as float64 has it.
+            "back" ignores hits from behind, where the geometric normal points along the ray. The decision is
+            exact for triangles; for curved shapes and copies it uses the normal in float64.
         fields : str or sequence of str, optional
-            The parts of the answer that are wanted, of "t", "shape_id", "primitive_id", "uv", "instance_id"
-            and "hit"; only these are computed and written. "hit" alone is a byte a ray, as `occluded` has it.
-            Those of the arrays in `out` if not given, and all without such arrays.
+            Attributes to compute and write: some of "t", "shape_id", "primitive_id", "uv", "instance_id" and
+            "hit". "hit" alone takes a byte for each ray, as in `occluded`. By default those of the arrays in
+            `out`, or else all.
 
         Returns
         -------
         Hits
-            With the leading shape of the rays. Of hits at the same `t`, the one of the lowest
-            (shape_id, instance_id, primitive_id). Where `fields` are given, or arrays, it has these parts and
-            what follows from them; an AttributeError tells which parts others would need.
+            With the leading shape of the rays. Of hits at the same `t`, the lowest (shape_id, instance_id,
+            primitive_id) wins. With `fields` or arrays, it has only these attributes and those that follow
+            from them; an AttributeError names the fields that others need.
 
         Raises
         ------
@@ -138,8 +138,8 @@ class RayQueries(Compilable):
     ) -> NDArray[np.bool_]:
         """Find whether each ray hits anything between `t_min` and `t_max`.
 
-        The same as ``intersect(...).hit``, and faster: a ray ends at the first hit that it meets. Arguments
-        and errors are those of `intersect`, but for `out`.
+        The same as ``intersect(...).hit``, and faster: a ray ends at the first hit found. Arguments and
+        errors are those of `intersect`, but for `out`.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ class RayQueries(Compilable):
         Returns
         -------
         AllHits
-            All hits one after the other, by ray, then `t`, then (shape_id, instance_id, primitive_id).
+            All hits in order of ray, then `t`, then (shape_id, instance_id, primitive_id).
 
         See Also
         --------
@@ -238,7 +238,7 @@ class RayQueries(Compilable):
         threads: int | None = None,
         time: ArrayLike | None = None,
     ) -> NDArray[np.int32]:
-        """Count the hits of each ray, as `intersect_all` finds them, without the memory for them.
+        """Count the hits of each ray, without storing them as `intersect_all` does.
 
         Arguments and errors are those of `intersect`.
 
@@ -276,8 +276,8 @@ class RayQueries(Compilable):
     ) -> TraversalCost:
         """Count the nodes visited and primitives tested for the closest hit of each ray.
 
-        Arguments and errors are those of `intersect`. Neighbouring rays share visits, so a ray's cost may
-        depend on the others of the batch. A copy of an instance counts as one primitive.
+        Arguments and errors are those of `intersect`. Neighboring rays share visits, so a ray's cost may
+        depend on the other rays of the batch. A copy of an instance counts as one primitive.
 
         Parameters
         ----------

@@ -29,17 +29,16 @@ class Occluding(Protocol):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BsdfSamples:
-    """Directions drawn from the scattering at surfaces.
+    """Directions sampled from the BSDF at surfaces.
 
     Attributes
     ----------
     direction : (N, 3) float64
-        Unit directions that paths go on to; NaN where nothing is scattered.
+        Unit directions in which paths continue; NaN where nothing is scattered.
     weight : (N, 3) float64
-        Scattering function times cosine over density: the factor of the throughput; 0 where nothing is
-        scattered.
+        BSDF times cosine over density, the factor of the throughput; 0 where nothing is scattered.
     pdf : (N,) float64
-        Density in solid angle; infinite where a single direction has all of it, as with a mirror.
+        Density in solid angle; infinite for specular scattering, as by a mirror.
 
     See Also
     --------
@@ -60,7 +59,7 @@ class BsdfSamples:
 
     @property
     def any(self) -> NDArray[np.bool_]:
-        """Mask of points that scatter something: (N,) bool."""
+        """Mask of points with scattering: (N,) bool."""
         return np.asarray(self.weight.any(axis=1))
 
     def __len__(self) -> int:
@@ -72,14 +71,14 @@ class BsdfSamples:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LightSamples:
-    """Light drawn from the lights of a scene, on its way to surfaces.
+    """Samples of the lights of a scene, as seen from surfaces.
 
     Attributes
     ----------
     direction : (N, 3) float64
-        Unit directions that it comes from; NaN where there is none.
+        Unit directions towards the light; NaN where there is none.
     weight : (N, 3) float64
-        Radiance over density, were nothing in between; 0 where there is none.
+        Radiance over density, without occlusion; 0 where there is no light.
     pdf : (N,) float64
         Density in solid angle; infinite for lights without extent.
 
@@ -103,19 +102,19 @@ class LightSamples:
     _time: Floats
 
     def visible(self, scene: Occluding, which: ArrayLike | None = None) -> NDArray[np.bool_]:
-        """Return whether nothing is in between: (N,) bool.
+        """Return whether each sample is unoccluded: (N,) bool.
 
         Parameters
         ----------
         scene : Scene
-            The scene that it was drawn from.
+            The scene of the lights.
         which : (N,) bool array, optional
-            Mask of samples to test; the others count as hidden. The default is all that bring light.
+            Mask of samples to test; the others are False. By default all with light.
 
         Returns
         -------
         (N,) bool
-            False for samples that are hidden, bring no light, or are not in `which`.
+            False for samples that are occluded, without light, or not in `which`.
 
         See Also
         --------

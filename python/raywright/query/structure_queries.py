@@ -30,15 +30,15 @@ class StructureQueries(Compilable):
 
     @property
     def bytes(self) -> int:
-        """Bytes that the compiled scene holds: accelerators, faces, vertices with all they have, transforms.
+        """Memory of the compiled scene in bytes: accelerators, faces, vertices with attributes, transforms.
 
-        Textures do not count.
+        Textures are not included.
         """
         return self._compiled().bytes
 
     @property
     def bounds(self) -> NDArray[np.float64] | None:
-        """Least and greatest corner of all that can be hit, (2, 3) float64; None for an empty scene.
+        """Least and greatest corner of the shapes, (2, 3) float64; None for an empty scene.
 
         Infinite shapes, such as a `Plane`, do not count.
         """
@@ -79,10 +79,10 @@ class StructureQueries(Compilable):
         return TreeBoxes(depth, primitives, corners.reshape(-1, 8, 3))
 
     def gpu_arrays(self) -> GpuArrays:
-        """Return the scene as arrays without pointers, as graphics processors take it.
+        """Return the scene as arrays without pointers, for graphics processors.
 
-        A binary tree is built for it, as the accelerator says if that is a `BVH`, and as the default does
-        otherwise; a scene that moves later is not followed.
+        A binary tree is built for it: with the options of the accelerator if that is a `BVH`, with the
+        default options otherwise. A later `refit` does not change the arrays.
 
         Returns
         -------

@@ -37,7 +37,7 @@ class Known:
 
     @cached_property
     def instance_id(self) -> NDArray[np.int32]:
-        """Which instance the point is on: (...) int32; -1 for none and for what is not instanced."""
+        """Index of the copy at the point: (...) int32; -1 for none and outside of instances."""
         if "instance_id" not in vars(self).get("_fields", ("instance_id",)):
             raise AttributeError
         # One number seen from every index: scenes without instances spend no memory on them.
@@ -53,10 +53,10 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     shape_id : (...) int32
         Index in ``scene.shapes``; -1 for none.
     primitive_id : (...) int32
-        Face of that shape, 0 if it is no mesh; on an instance, a number for `Instance.locate`.
+        Face of that shape, 0 for a curved shape; on an instance, a number for `Instance.locate`.
     uv : (..., 2) float64
         Barycentric weights of the face's second and third corner, so that the point is at
-        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a shape that is no mesh, its own u and v.
+        ``(1 - u - v) * a + u * b + v * c`` for corners a, b, c; on a curved shape, its own u and v.
     """
 
     shape_id: NDArray[np.int32]
@@ -70,7 +70,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
     @cached_property
     def names(self) -> NDArray[np.str_]:
-        """What the shape is called that the point is on: (...) str; "" for none, and where it has no name."""
+        """Name of the shape at the point: (...) str; "" for none, and for shapes without a name."""
         # The last name is that of shape -1.
         known = names_of(self._known("names").shapes)
         return sealed(np.asarray(np.array([*known, ""])[self.shape_id]))
@@ -79,7 +79,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
     def cell(self) -> NDArray[np.int64]:
         """Cell of the original mesh, such as a polygon or a volume cell: (...) int64; -1 for none.
 
-        The face where ``Mesh.cells`` is None, and 0 on a shape that is no mesh.
+        The face if ``Mesh.cells`` is None, and 0 on a curved shape.
         """
         return sealed(cells(self._known("cell").shapes, self.shape_id, self.primitive_id))
 
@@ -157,7 +157,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return sealed(errors.reshape(self.primitive_id.shape))
 
     def spawn_rays(self, directions: ArrayLike) -> SpawnedRays:
-        """Return rays that leave the points along some directions without meeting the same surface.
+        """Return rays that leave the points in given directions without hitting the same surface.
 
         Their origins are offset from the surface, to the side of each direction:
         ``scene.intersect(*hits.spawn_rays(ways))``.
@@ -165,8 +165,8 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         Parameters
         ----------
         directions : (..., 3) array
-            Directions of the rays; they need not be unit. They and the points broadcast as arrays do: of
-            points of shape (N,), directions of shape (3,) or (N, 3) give a ray each, and (S, N, 3) S of them.
+            Directions of the rays; they need not be unit. Directions and points broadcast: for points of
+            shape (N,), directions of shape (3,) or (N, 3) give one ray for each point, and (S, N, 3) give S.
 
         Returns
         -------
@@ -211,7 +211,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
 
     @cached_property
     def surface(self) -> Surface:
-        """All about the points: normals, derivatives by the coordinates, bounds on errors."""
+        """Differential geometry at the points: normals, derivatives with respect to u and v, error bounds."""
         return self._surface(None)
 
     def _surface(self, ray: NDArray[np.int64] | None) -> Surface:

@@ -17,9 +17,9 @@ class TraversalCost:
     Attributes
     ----------
     nodes : (...) int32
-        Nodes of the accelerator that are visited: the boxes of a node's children are tested together.
+        Visited nodes of the accelerator; the boxes of a node's children are tested together.
     primitives : (...) int32
-        Primitives in the leaves that are visited: each is tested.
+        Tested primitives: all of the visited leaves.
 
     See Also
     --------

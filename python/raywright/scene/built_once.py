@@ -39,10 +39,10 @@ class BuiltOnce(Queries):
         Parameters
         ----------
         progress : bool or callable
-            Whether to show a bar on stderr where it takes longer than two seconds. Or a function that is
-            called with the share that is done, from 0 to 1 and never less than before: ten times a second at
-            most, and in the end with 1. An exception of the function ends the build; the function cannot
-            query the scene. If a query compiles the scene, there is a bar if stderr is a terminal.
+            True for a progress bar on stderr after two seconds. Or a function that gets the completed share,
+            from 0 to 1 and never decreasing: at most ten times a second, and at the end with 1. An exception
+            in the function ends the build; the function cannot query the scene. If a query compiles the
+            scene, there is a bar if stderr is a terminal.
 
         Raises
         ------
@@ -70,7 +70,7 @@ class BuiltOnce(Queries):
         self._compiled(progress)
 
     def rebuild(self, progress: BuildProgress = True) -> None:
-        """Build the accelerator anew, for where the vertices are now.
+        """Rebuild the accelerator for the current vertices.
 
         Parameters
         ----------

@@ -62,37 +62,35 @@ class Scene(BuiltOnce):
         Shapes that rays can hit. A path may be of a PLY, OBJ, STL, OFF or glTF file, or any other that
         trimesh reads. Objects are meshes and scenes of trimesh, data sets of pyvista and VTK, meshes of
         Open3D, meshio, manifold3d and Blender, shapes of CadQuery and build123d, and ``(vertices, faces)``
-        pairs of arrays or tensors; see `Mesh.of`. Lists and dicts may be nested; all of it is laid out flat
-        in ``scene.shapes``, and keys of dicts are the names. A trimesh.Scene gives one mesh for each node
-        that holds one, in the order of its geometry and with the node's transform applied. Points and curves
-        are left out, with a warning.
+        pairs of arrays or tensors; see `Mesh.of`. Lists and dicts may be nested; ``scene.shapes`` is the
+        flattened list, and keys of dicts are the names. A trimesh.Scene becomes one mesh for each node with a
+        mesh, in the order of its geometry and with the node's transform applied. Points and curves are left
+        out, with a warning.
     lights : PointLight, SpotLight, DirectionalLight or ProjectorLight, or sequence of them
-        Lights that are no surfaces.
+        Lights without a surface.
     environment : ConstantEnvironment, EnvironmentMap, SunSky, list of these, float or 3 floats, optional
         Light from infinity; numbers are a constant radiance, and several environments add up. None is black.
     accelerator : BVH, KdTree, Octree, BSP, Grid, NestedGrid or BruteForce
-        The structure that finds hits.
+        The accelerator.
     precision : {"auto", "single", "double"}
         Precision of vertices: "single" rounds them to float32, which takes the least memory and is the
         fastest, "double" does not round. "auto" loses no digit: vertices are float32 if all of them are
         float32 numbers, as those of most binary files are, and float64 otherwise. Either way hits are exact
         for the stored vertices. "double" costs nothing if all vertices are float32 numbers anyway.
     quality : {"medium", "low", "high"}
-        Effort spent on the accelerator's build to make rays faster. Except with "low": if the geometry
-        is rotated as a whole, oriented bounding boxes are used, and long diagonal primitives may be split, by
-        spatial splits if they are few and before the build if they are many. "high" splits more of them.
-        `refit` rebuilds a tree that holds pieces.
+        Effort of the accelerator's build for faster rays. "medium" and "high" use oriented bounding boxes if
+        the geometry is rotated as a whole, and may split long diagonal primitives: by spatial splits if they
+        are few, before the build if they are many. "high" splits more of them. `refit` rebuilds a tree with
+        split primitives.
 
     medium : Homogeneous or GridMedium, optional
         Medium outside of all shapes: haze, fog, sea. None is clear.
     shading_normals : {"faded", "raw"}
-        Treatment of shading normals that differ from those of faces: of vertices, bumps and normal maps.
-        "faded" lets light fade towards the horizon of the face, so that facets do not show at grazing angles,
-        and bends normals that face away towards the viewer. "raw" does neither, as other renderers: see
-        Notes.
+        Treatment of shading normals: those of vertices, bump maps and normal maps. "faded" lets light fade
+        towards the horizon of the face, so that facets are invisible at grazing angles, and bends normals
+        towards a viewer that they face away from. "raw" does neither, as in other renderers: see Notes.
     weld : "auto", float or None
-        Distance at which corners of meshes are merged, in the scene's unit: see Notes. None merges equal
-        corners only.
+        Maximum distance of corners to merge, in the scene's unit: see Notes. None merges equal corners only.
 
     Raises
     ------
@@ -102,7 +100,7 @@ class Scene(BuiltOnce):
         If a file is not a mesh that can be read, `precision`, `quality` or `shading_normals` is not one
         of those, or `weld` is negative or not finite.
     TypeError
-        If something is not of the kinds above.
+        If an argument has another type.
 
     See Also
     --------
@@ -112,34 +110,34 @@ class Scene(BuiltOnce):
 
     Notes
     -----
-    With "auto", only vertices that faces use count. One mesh that has digits beyond float32 keeps the digits
-    of all meshes of the scene, so that vertices which they share stay shared; the shapes of an `Instance` are
-    a group of their own in this. `plan` has the displacement by rounding, and ``accelerator_info.precision``
-    the result. If "single" moves a vertex by more than 1e-7 of the extent of its mesh, there is one
-    RuntimeWarning, with the figure, when the scene is compiled.
+    With "auto", only vertices that faces use count. If one mesh needs float64, all meshes of the scene are
+    kept in float64, so that shared vertices stay equal; the shapes of an `Instance` are a separate group.
+    `plan` reports the displacement by rounding, and ``accelerator_info.precision`` the precision in use. If
+    "single" moves a vertex by more than 1e-7 of the extent of its mesh, there is one RuntimeWarning, with the
+    figure, when the scene is compiled.
 
-    With "raw", light counts by its cosine to shading normals alone, and these decide which side is seen:
-    a `TwoSided` whose shading normal points away from the viewer shows its back. Light on one side of a face
-    still does not reach the other. Under bumps and normal maps, light has to come from the same side of the
-    normal that the surface has without them, and a share of it counts (Estevez, Lecocq and Stein, "A
-    Microfacet-Based Shadowing Function to Solve the Bump Terminator Problem", 2019); a normal that the viewer
-    would see from behind is turned half round the surface's own; and of a `BumpMap` only slopes count.
-    Mitsuba does all this. Scenes without shading normals are the same either way; of others, paths are
-    slower, ``Path(reuse=)`` shares nothing at their surfaces, and graphics processors leave them to the CPU.
+    With "raw", light is weighted by its cosine to the shading normal alone, which also decides the visible
+    side: a `TwoSided` whose shading normal points away from the viewer shows its back. Light on one side of a
+    face still does not reach the other. Under bump and normal maps, light is shadowed by the unperturbed
+    normal (Estevez, Lecocq and Stein, "A Microfacet-Based Shadowing Function to Solve the Bump Terminator
+    Problem", 2019); a normal that faces away from the viewer is rotated by 180° about the unperturbed one;
+    and of a `BumpMap` only slopes count. Mitsuba does all this. Scenes without shading normals do not change;
+    in others, paths are slower, ``Path(reuse=)`` shares nothing at such surfaces, and a `Gpu` leaves the
+    picture to the CPU.
 
     Corners that differ by rounding leave cracks, through which rays slip, and surfaces that do not close. So
     corners on open edges are merged within the distance `weld`: "auto" is 2^-21 of the largest coordinate of
-    a mesh if all are float32 numbers, 2^-47 if not, and a 64th of its mean edge at most, before it was
-    transformed; between two meshes the lesser. Two corners of one face are never merged, and closed meshes
-    stay unchanged, however thin. With "auto" that goes for files, for trimesh's objects and for CAD shapes,
-    each by itself; a `Mesh` of arrays, or an object of another library, is hit where its vertices are, and
-    welded for `contains`, `signed_distance` and in ``rw.measure``. A distance goes for all meshes, together;
-    those of an `Instance` are a group of their own. ``rw.measure.topology`` lists the remaining cracks.
+    a mesh if all are float32 numbers, 2^-47 if not, and a 64th of its mean edge at most, before transforms;
+    between two meshes the lesser one applies. Two corners of one face are never merged, and closed meshes
+    stay unchanged, even if thin. "auto" welds each file, trimesh object and CAD shape by itself; a `Mesh` of
+    arrays, or an object of another library, is welded only for `contains`, `signed_distance` and
+    ``rw.measure``, and its hits are those of the given vertices. A given distance welds all meshes together;
+    those of an `Instance` are a separate group. ``rw.measure.topology`` lists the remaining cracks.
 
     Faces with a corner that is NaN or infinite are left out when the scene is compiled, with one
     RuntimeWarning that gives their number. Scenes compare by contents, and pickle without compiled data. A
-    process keeps the last two unpickled scenes that it has compiled: if the tasks of a pool bring the same
-    scene again and again, each process compiles it once.
+    process caches the last two unpickled scenes that it compiled, so each process of a pool compiles the
+    scene of its tasks once.
 
     Examples
     --------
@@ -186,7 +184,7 @@ class Scene(BuiltOnce):
 
     @property
     def shapes(self) -> tuple[AnyShape, ...]:
-        """Shapes that rays can hit; `Hits.shape_id` counts them."""
+        """Shapes that rays can hit; `Hits.shape_id` is an index of it."""
         return self._shapes
 
     @property
@@ -196,7 +194,7 @@ class Scene(BuiltOnce):
 
     @property
     def lights(self) -> tuple[Light, ...]:
-        """The lights that are no surfaces."""
+        """The lights without a surface."""
         return self._lights
 
     @property
@@ -231,19 +229,19 @@ class Scene(BuiltOnce):
 
     @property
     def weld(self) -> Weld:
-        """The argument `weld`: "auto", a distance, or None for equal ones alone."""
+        """The argument `weld`: "auto", a distance, or None to merge equal corners only."""
         return self._weld
 
     @property
     def wavelengths(self) -> str | None:
-        """The reason for spectral rendering; None where red, green and blue do."""
+        """The reason for spectral rendering; None if the scene is rendered in red, green and blue."""
         return self._wavelengths
 
     def replace(self, **changes: Any) -> Scene:
         """Return a copy of the scene with some arguments changed.
 
-        The first query compiles it: if it differs in lights, environment and medium alone, it shares this
-        one's accelerator. ``copy.replace`` (Python 3.13) does the same.
+        The first query compiles it: if only lights, environment or medium differ, it shares this one's
+        accelerator. ``copy.replace`` (Python 3.13) does the same.
 
         Parameters
         ----------
@@ -283,23 +281,23 @@ class Scene(BuiltOnce):
     __replace__ = replace
 
     def refit(self, vertices: ArrayLike | Sequence[ArrayLike | None]) -> float:
-        """Move the vertices, and fit the accelerator to them: much faster than a new scene.
+        """Move the vertices and refit the accelerator, much faster than building a new scene.
 
-        Faces, materials, lights and given normals stay as they are. ``scene.shapes`` are new meshes; hits
-        that were found before stay as they were found.
+        Faces, materials, lights and given normals stay as they are. ``scene.shapes`` are new meshes; earlier
+        hits keep their values.
 
         Parameters
         ----------
         vertices : (V, 3) array, or list of them
-            The vertices of the only shape, or of each shape; as many as it has. None in the list leaves a
-            shape where it is, the only choice for a curved one. An `Instance` takes transforms, (4, 4) or (N,
-            4, 4), or a tuple of two such arrays for copies that move; its shapes stay as they are.
+            New vertices of the only shape, or of each shape, of equal number. None in the list leaves a shape
+            in place; curved shapes must have None. An `Instance` takes transforms, (4, 4) or (N, 4, 4), or a
+            tuple of two such arrays for copies that move; its shapes stay as they are.
 
         Returns
         -------
         float
-            How much the accelerator's expected cost (`sah_cost`) has grown since it was last built: 1 is as
-            good as new, and at 2 rays take about twice as long, which `rebuild` puts right.
+            Ratio of the accelerator's expected cost (`sah_cost`) to that after its last build: at 1 it is as
+            good as new, at 2 rays take about twice as long, and `rebuild` helps.
 
         Raises
         ------
@@ -316,9 +314,9 @@ class Scene(BuiltOnce):
         Notes
         -----
         The accelerator is rebuilt if it cannot be refitted, for example if other faces than before have a
-        corner that is NaN or infinite, or if it holds pieces of faces; ``scene.accelerator_info.kind`` then
-        does not end in "refitted". With ``quality="low"`` the default accelerator holds no pieces. A scene
-        without queries so far is built by the first one.
+        corner that is NaN or infinite, or if faces were split; ``scene.accelerator_info.kind`` then does not
+        end in "refitted". With ``quality="low"`` the default accelerator splits no faces. A scene that is not
+        compiled yet is built by its first query.
 
         Examples
         --------
@@ -347,7 +345,7 @@ class Scene(BuiltOnce):
         Returns
         -------
         Scene
-            The very same object if no corner moves, as in scenes of files and of closed meshes.
+            The scene itself if no corner moves, as for files and closed meshes.
 
         See Also
         --------
@@ -375,7 +373,7 @@ class Scene(BuiltOnce):
     def plan(self) -> Plan:
         """Return a table of the features that the scene needs or leaves out, and the kernel that renders it.
 
-        One row tells whether vertices keep more digits than float32 has, and how far rounding moves them.
+        One row has the precision of vertices, and their displacement by rounding.
 
         Returns
         -------
@@ -409,7 +407,7 @@ class Scene(BuiltOnce):
         Returns
         -------
         GpuScene
-            For use in a ``with`` block, whose end gives the memory of the device back.
+            For use in a ``with`` block, whose end frees the memory of the device.
 
         Raises
         ------
