@@ -1,13 +1,13 @@
-//! Gain from specialized kernels: the same paths in the same scene, traced by the kernel that the scene needs and by
-//! more general ones. They run in turns, so that other load on the machine affects all alike. Their results are
-//! compared bit for bit before timing.
+//! Gain from leaving out what a scene does not need: the same paths in the same scene, by stages in f32 and by the loop
+//! that knows everything. They run in turns, so that other load on the machine affects both alike. Their means are
+//! compared before timing.
 
 use raywright::accel::bvh::{self, Options};
-use raywright::integrators::{CameraSample, Job, Path};
+use raywright::integrators::{CameraSample, Integrator, Job, Path};
 use raywright::math::{DVec3, Ray, Vec3};
 use raywright::optics::Rgb;
 use raywright::sampling::Sampler;
-use raywright::scene::{DiffuseMaterial, Mesh, Perspective, Scene, SceneDescription, ShadingVariant, Shape};
+use raywright::scene::{DiffuseMaterial, Mesh, Perspective, Scene, SceneDescription, Shape};
 use raywright::simd::Level;
 use raywright::workers::Cancel;
 use std::sync::Arc;
@@ -25,40 +25,41 @@ fn main() {
     let scene = room();
     let camera =
         Perspective::looking_at(DVec3::new(0.0, 0.0, 0.9), DVec3::ZERO, DVec3::Y, 60.0, 64, 64).expect("a camera");
-    let run = |kernel| {
+    let run = |is_general: bool| {
         let mut samples: Vec<_> = (0..PATHS).map(sample).collect();
         let mut radiance = vec![Rgb::ZERO; samples.len()];
         let path = Path::default();
         let job = Job::new(&scene, &camera, 0, 1);
-        let session = path.begin_as(job, kernel, &Cancel::default());
+        let cancel = Cancel::default();
+        let session = if is_general { path.begin_in_general(job, &cancel) } else { path.begin(job, &cancel) };
         let mut worker = session.worker();
         let start = Instant::now();
         worker.radiance(&mut samples, &Cancel::default(), &mut radiance);
         (start.elapsed().as_secs_f64(), radiance)
     };
-    let all = ShadingVariant::ALL.map(run);
-    assert!(all.iter().all(|(_, radiance)| *radiance == all[0].1), "the same bits");
+    let [stages, general] = [false, true].map(|is_general| {
+        let sum: Rgb = run(is_general).1.into_iter().sum();
+        sum[1] / f64::from(PATHS)
+    });
+    assert!((stages / general - 1.0).abs() < 0.05, "{stages} and {general}");
     if !is_timed {
         return;
     }
-    let mut seconds = [const { Vec::new() }; 3];
+    let mut seconds = [const { Vec::new() }; 2];
     for turn in 0..TURNS {
-        for i in 0..3 {
-            let which = (i + turn) % 3;
-            seconds[which].push(run(ShadingVariant::ALL[which]).0);
+        for i in 0..2 {
+            let which = (i + turn) % 2;
+            seconds[which].push(run(which == 1).0);
         }
     }
-    println!(
-        "Paths of a closed room of one diffuse colour a wall, on one thread; a kernel's time over that of the plain \
-         one."
-    );
+    println!("Paths of a closed room of one diffuse colour a wall, on one thread.");
     println!();
-    println!("| kernel | thousand paths a second | time over plain |");
+    println!("| kernel | thousand paths a second | time over the first |");
     println!("|---|---|---|");
-    for (kernel, times) in ShadingVariant::ALL.into_iter().zip(&seconds) {
-        let ratios = times.iter().zip(&seconds[0]).map(|(mine, plain)| mine / plain).collect();
+    for (kernel, times) in ["wavefront", "general"].into_iter().zip(&seconds) {
+        let ratios = times.iter().zip(&seconds[0]).map(|(mine, first)| mine / first).collect();
         let rate = f64::from(PATHS) / median(times.clone()) / 1e3;
-        println!("| {} | {rate:.0} | {:.2} |", kernel.name(), median(ratios));
+        println!("| {kernel} | {rate:.0} | {:.2} |", median(ratios));
     }
 }
 

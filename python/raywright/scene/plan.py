@@ -34,9 +34,8 @@ class Plan:
     Attributes
     ----------
     kernel : str
-        Kernel that traces paths: ``"plain"`` (one diffuse color for each shape), ``"open"`` (any material) or
-        ``"general"`` (also masks, nested media, filtered textures). All kernels that support a scene give the
-        same bits.
+        Kernel that traces paths: ``"wavefront"`` (stages in float32), ``"general"`` (masks, nested
+        dielectrics, wavelengths) or ``"media"``.
     rows : tuple of PlanRow
         Every feature, whether this scene has it, and the consequence.
 
@@ -48,7 +47,7 @@ class Plan:
     --------
     >>> plan = rw.Scene(rw.Sphere()).plan()
     >>> plan.kernel, plan.needed
-    ('plain', ('shapes',))
+    ('wavefront', ('shapes',))
     """
 
     kernel: str

@@ -16,7 +16,7 @@ pub mod bvh;
 mod crossings;
 #[cfg(test)]
 mod fans;
-mod few_triangles;
+mod few_shapes;
 mod filtered_query;
 pub mod flat;
 pub mod grid;
@@ -39,7 +39,7 @@ pub use box_tree::BoxTree;
 pub use boxes::{Boxes, NodeBox};
 pub use brute::BruteForce;
 pub use crossings::Crossings;
-pub use few_triangles::FewTriangles;
+pub use few_shapes::FewShapes;
 pub use filtered_query::Counts;
 pub use nearest::{Nearest, PrimitiveFilter};
 pub use parity::{Exit, Exits, Side};

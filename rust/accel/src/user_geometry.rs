@@ -27,6 +27,12 @@ pub trait UserGeometry: Send + Sync {
         self.bounds(primitive).map(|bounds| bounds.around())
     }
 
+    /// Center and radius of a primitive that is a sphere and does not move.
+    fn ball(&self, primitive: u32) -> Option<(DVec3, f64)> {
+        let _ = primitive;
+        None
+    }
+
     /// Return whether hits identify primitives within the hit primitive ([`raywright_base::math::Hit::inner`]).
     fn is_nested(&self) -> bool {
         false

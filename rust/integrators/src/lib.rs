@@ -22,6 +22,7 @@ mod photons;
 mod preview;
 mod radiosity;
 mod ray_cast;
+mod resampling;
 mod roulette;
 mod shadows;
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::transport::{Settings, can_share};
 use super::volumes::{self, Volumes};
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
-use raywright_scene::{Scene, ShadingVariant};
+use raywright_scene::Scene;
 
 /// Unidirectional path tracing (Kajiya, "The Rendering Equation", 1986). Each bounce samples one light, combined with
 /// BSDF sampling by multiple importance sampling (Veach and Guibas, "Optimally Combining Sampling Techniques", 1995).
@@ -46,10 +46,9 @@ impl Path {
             && !scene.plan().needs().waves
     }
 
-    /// Begin a session as [`Integrator::begin`] does, compiled as this variant or a more general one. All variants that
-    /// support a scene give the same bits.
-    pub fn begin_as<'a>(&self, job: Job<'a>, variant: ShadingVariant, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        self.settings(job.scene).begin_as(job, variant, cancel)
+    /// Begin a session as [`Integrator::begin`] does, by the loop in f64 that knows everything, without sharing.
+    pub fn begin_in_general<'a>(&self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
+        self.settings(job.scene).begin_in_general(job, cancel)
     }
 }
 

@@ -6,9 +6,7 @@ use super::media::Medium;
 use super::{
     DescriptionError, Emission, Enclosing, Geometry, Lights, Material, Plan, SceneDescription, Solids, SurfacePoint,
 };
-use raywright_accel::{
-    Accelerator, Cost, Crossings, FewTriangles, Nearest, PrimitiveFilter, Primitives, Side, Touches,
-};
+use raywright_accel::{Accelerator, Cost, Crossings, FewShapes, Nearest, PrimitiveFilter, Primitives, Side, Touches};
 use raywright_base::math::{DVec3, Hit, PathRays, Ray, RayQueue, Region};
 use raywright_base::simd::Level;
 use raywright_base::work::{Stopped, Work};
@@ -26,7 +24,7 @@ pub struct Scene {
     kept: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
     accelerator: Box<dyn Accelerator>,
     /// The triangles as a flat list for path rays, if they are few and the scene has nothing else.
-    few: Option<FewTriangles>,
+    few: Option<FewShapes>,
     region: Region,
     /// The medium outside all closed surfaces.
     surrounding: Option<Arc<dyn Medium>>,
@@ -108,7 +106,7 @@ impl Scene {
         let plan = Plan::new(&geometry, &materials, &lights);
         let built_cost = built_cost.unwrap_or(cost);
         let kept = Mutex::default();
-        let few = accelerator.by_columns().and_then(|_| FewTriangles::new(&geometry));
+        let few = accelerator.by_columns().and_then(|_| FewShapes::new(&geometry));
         Self { geometry, materials, lights, plan, kept, accelerator, few, region, surrounding: None, built_cost }
     }
 
@@ -168,6 +166,11 @@ impl Scene {
                 }
             }
         }
+    }
+
+    /// The first hit of each path ray, with all there is to know of it.
+    pub fn first_hits(&self, rays: &PathRays, hits: &mut [Hit]) {
+        self.accelerator.intersect(&(0..rays.len).map(|i| rays.get(i)).collect::<Vec<_>>(), &mut hits[..rays.len]);
     }
 
     /// Return whether rays of paths are traced in packets of sixteen, which gain by a common origin.

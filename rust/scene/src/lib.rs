@@ -53,7 +53,7 @@ pub use lookup_context::LookupContext;
 pub use materials::{DiffuseMaterial, Material};
 pub use opacity::opacity_at;
 pub use patches::{Cell, Patches};
-pub use plan::{Plan, PlanRow, SceneNeeds, ShadingVariant};
+pub use plan::{Plan, PlanRow, SceneNeeds};
 pub use ray_origin::RayOrigin;
 pub use shading::{Footprint, ShadingPoint};
 pub use surface_interaction::fading;

@@ -1,4 +1,4 @@
-//! The features a scene needs, and the shading variant selected by them.
+//! The features a scene needs.
 
 use super::materials::BsdfMix;
 use super::media::Medium;
@@ -78,31 +78,6 @@ impl BitOr for SceneNeeds {
             double: self.double | other.double,
             light: self.light | other.light,
             waves: self.waves | other.waves,
-        }
-    }
-}
-
-/// A shading loop over a batch of paths, compiled for a subset of features.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ShadingVariant {
-    /// One diffuse colour per shape: no material evaluation, no pass-through surfaces.
-    Plain,
-    /// Any material and texture; no masks, nested interiors or ray footprints.
-    Open,
-    /// All features.
-    General,
-}
-
-impl ShadingVariant {
-    /// All variants, from least to most features.
-    pub const ALL: [Self; 3] = [Self::Plain, Self::Open, Self::General];
-
-    /// Name of the variant.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Plain => "plain",
-            Self::Open => "open",
-            Self::General => "general",
         }
     }
 }
@@ -279,8 +254,7 @@ impl Plan {
         self.few > 0 && (f64::MIN_POSITIVE..=GLOSS).contains(&roughness())
     }
 
-    /// The BSDF of a shape in vacuum, if it is constant. Under [`ShadingVariant::Plain`] every shape has one, and it is
-    /// diffuse.
+    /// The BSDF of a shape in vacuum, if it is constant.
     #[inline]
     pub fn constant(&self, shape: u32, is_front: bool) -> Option<&BsdfMix> {
         self.constants[shape as usize].as_ref().map(|[front, back]| if is_front { front } else { back })
@@ -290,6 +264,11 @@ impl Plan {
     #[inline]
     pub fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.diffuse[shape as usize]
+    }
+
+    /// Returns whether the BSDF of every shape is constant ([`Plan::constant`]).
+    pub fn is_constant(&self) -> bool {
+        self.constants.iter().all(Option::is_some)
     }
 
     /// Number of BSDF kinds: those of [`AnyBsdf`], and [`Plan::MIXED`].
@@ -308,26 +287,20 @@ impl Plan {
         (if front == back || is_front() { front } else { back }).into()
     }
 
-    /// The variant with the fewest features that the scene's needs fit in.
-    pub fn variant(&self) -> ShadingVariant {
-        ShadingVariant::ALL.into_iter().find(|&variant| self.suits(variant)).unwrap_or(ShadingVariant::General)
+    /// Kind of both sides of a shape's BSDF in vacuum; [`Plan::MIXED`] if they differ.
+    #[inline]
+    pub fn kind_of_shape(&self, shape: u32) -> usize {
+        let [front, back] = self.kinds[shape as usize];
+        if front == back { front.into() } else { Self::MIXED }
     }
 
-    /// Returns whether a variant has the features the scene needs.
-    pub fn suits(&self, variant: ShadingVariant) -> bool {
-        let needs = &self.needs;
-        match variant {
-            ShadingVariant::Plain => {
-                !(needs.scattering
-                    || needs.instances
-                    || needs.points.any()
-                    || needs.masks
-                    || needs.interiors
-                    || needs.waves
-                    || needs.media)
-            }
-            ShadingVariant::Open => !(needs.masks || needs.nested || needs.media || needs.points.width || needs.waves),
-            ShadingVariant::General => true,
+    /// Name of the loop that traces paths: "media" if the scene has any, "wavefront" if all paths take the same stages,
+    /// otherwise "general".
+    pub fn kernel(&self) -> &'static str {
+        match &self.needs {
+            SceneNeeds { media: true, .. } => "media",
+            SceneNeeds { masks: false, nested: false, waves: false, .. } if !self.as_given => "wavefront",
+            _ => "general",
         }
     }
 
@@ -396,8 +369,7 @@ mod tests {
     #[test]
     fn diffuse_rooms_are_plain() {
         for scene in [furnace(0.5, 1.0), cornell(8, 8).0] {
-            assert_eq!(scene.plan().variant(), ShadingVariant::Plain);
-            assert!(ShadingVariant::ALL.into_iter().all(|variant| scene.plan().suits(variant)));
+            assert_eq!(scene.plan().kernel(), "wavefront");
             let has: Vec<_> = scene.plan().rows().into_iter().filter(|row| row.1).map(|row| row.0).collect();
             assert_eq!(has, ["light"]);
         }
@@ -436,9 +408,9 @@ mod tests {
             ..shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0)
         };
         let plan = |shapes| crate::fixtures::scene(SceneDescription { shapes, ..Default::default() }).plan().clone();
-        assert_eq!(plan(vec![sheet(glass())]).variant(), ShadingVariant::Open);
-        assert_eq!(plan(vec![sheet(glass()), sheet(glass())]).variant(), ShadingVariant::General);
+        assert!(!plan(vec![sheet(glass())]).needs().nested);
+        assert!(plan(vec![sheet(glass()), sheet(glass())]).needs().nested);
         let mask = Odd { interior: None, is_opaque: false };
-        assert_eq!(plan(vec![sheet(mask)]).variant(), ShadingVariant::General);
+        assert!(plan(vec![sheet(mask)]).needs().masks);
     }
 }

@@ -98,7 +98,7 @@ def test_path_of_depth_one_and_direct_are_the_same_estimator():
     scene, camera = rw.scenes.cornell_box(width=24, height=24)
     path = rw.render(scene, camera, rw.Path(max_depth=1), samples=64, progress=False)
     direct = rw.render(scene, camera, rw.Direct(), samples=64, progress=False)
-    # The special kernel and the general one agree bit for bit.
+    # Both are paths of one bounce by the same stages.
     np.testing.assert_array_equal(path.rgb, direct.rgb)
 
 
@@ -183,7 +183,7 @@ def test_integrators_compare_and_pickle():
 def test_plan_tells_what_is_left_out():
     scene, _ = rw.scenes.cornell_box()
     plan = scene.plan()
-    assert plan.kernel == "plain"
+    assert plan.kernel == "wavefront"
     assert plan.needed == ("light", "float64 vertices")
     assert "motion" in plan.left_out
     lines = str(plan).splitlines()

@@ -176,7 +176,8 @@ SCALED = {
 @pytest.mark.parametrize(
     "integrator",
     [
-        rw.Path(),
+        # Without roulette, for which the loops of both scenes draw other numbers.
+        rw.Path(roulette_depth=1000),
         rw.Bidirectional(),
         rw.LightTraced(),
         rw.PhotonMap(200),

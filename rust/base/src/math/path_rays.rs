@@ -19,6 +19,8 @@ pub struct PathRays {
     /// Triangles that each ray misses: the one it leaves and, for bounded rays, the one it goes to, or
     /// [`Ray::NO_TRIANGLE`].
     pub misses: Vec<[u32; 2]>,
+    /// When each sees the scene, from 0 to 1 while the shutter is open. Empty if nothing moves.
+    pub time: Vec<f64>,
 }
 
 impl PathRays {
@@ -35,7 +37,14 @@ impl PathRays {
             direction: [const { Vec::new() }; 3].map(|_: Vec<f32>| vec![0.0; room]),
             t_max: vec![f64::INFINITY; if are_endless { 0 } else { room }],
             misses: vec![[Ray::NO_TRIANGLE; 2]; room],
+            time: Vec::new(),
         }
+    }
+
+    /// The same, with times.
+    pub fn with_times(mut self) -> Self {
+        self.time = vec![0.0; self.misses.len()];
+        self
     }
 
     /// Make room for so many rays with ends, and keep those that are there.
@@ -55,6 +64,12 @@ impl PathRays {
         self.t_max.get(i).copied().unwrap_or(f64::INFINITY)
     }
 
+    /// The time of a ray.
+    #[inline(always)]
+    pub fn time(&self, i: usize) -> f64 {
+        self.time.get(i).copied().unwrap_or(0.0)
+    }
+
     /// The direction of a ray.
     #[inline(always)]
     pub fn direction(&self, i: usize) -> DVec3 {
@@ -70,7 +85,8 @@ impl PathRays {
     /// One ray, in f64.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Ray {
-        Ray { t_max: self.end(i), misses: self.misses[i], ..Ray::new(self.origin(i), self.direction(i)) }
+        let (t_max, time, misses) = (self.end(i), self.time(i), self.misses[i]);
+        Ray { t_max, time, misses, ..Ray::new(self.origin(i), self.direction(i)) }
     }
 
     /// All rays as columns.

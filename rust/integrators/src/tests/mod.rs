@@ -13,14 +13,14 @@ use raywright_base::math::{DVec3, Ray};
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{Footprint, Perspective, Scene};
+use raywright_scene::{Perspective, Scene};
 use std::sync::LazyLock;
 
 /// Return a job with rays without width, which no camera sends.
 fn job(scene: &Scene) -> Job<'_> {
     static CAMERA: LazyLock<Perspective> =
         LazyLock::new(|| Perspective::looking_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 60.0, 1, 1).expect("a camera"));
-    Job { scene, camera: &*CAMERA, footprint: Footprint::default(), seed: 0, batch: 1 }
+    Job::new(scene, &*CAMERA, 0, 1)
 }
 
 /// Return the radiance of a number of samples of a ray.

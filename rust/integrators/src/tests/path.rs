@@ -8,11 +8,8 @@ use raywright_base::sampling::Sampler;
 use raywright_base::simd::Level;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
-use raywright_scene::{
-    Camera, ConstantEnvironment, Instances, Matrix, PointLight, Prototype, Scene, SceneDescription, ShadingVariant,
-    Shape,
-};
+use raywright_scene::fixtures::{furnace, inward_box, rectangle, scene, shape};
+use raywright_scene::{ConstantEnvironment, Instances, Matrix, PointLight, Prototype, Scene, SceneDescription, Shape};
 use std::sync::Arc;
 
 const ANYWHERE: Ray = Ray::new(DVec3::new(0.1, -0.2, 0.3), DVec3::new(0.48, 0.6, 0.64));
@@ -158,40 +155,6 @@ fn a_sample_does_not_depend_on_its_batch() {
     };
     assert_eq!(run(1), run(100));
     assert_eq!(run(7), run(100));
-}
-
-#[test]
-fn every_kernel_gives_the_same_bits() {
-    let (room, camera) = cornell(8, 8);
-    let lamp = PointLight { position: DVec3::new(0.3, 0.5, 0.2), intensity: Rgb::splat(0.1) };
-    let [_, _, floor, ..] = inward_box([-1.0; 3], [2.0; 3]);
-    let open = SceneDescription {
-        shapes: vec![shape(floor, [0.7, 0.1, 0.4], 0.3)],
-        lights: vec![Arc::new(lamp), Arc::new(ConstantEnvironment { radiance: Rgb::new(0.1, 0.2, 0.3) })],
-    };
-    // From the camera, and from inside the furnace.
-    let within = ANYWHERE.origin;
-    for (scene, from) in [(room, None), (furnace(0.9, 0.3), Some(within)), (scene(open), None)] {
-        assert_eq!(scene.plan().variant(), ShadingVariant::Plain);
-        let samples: Vec<_> = (0..4000u32)
-            .map(|i| {
-                let film = [f64::from(i % 8) + 0.3, f64::from(i / 8 % 8) + 0.6];
-                let ray = camera.ray(film, [0.5; 2], 0.0).ray;
-                let ray = Ray { origin: from.unwrap_or(ray.origin), ..ray };
-                CameraSample { ray, sampler: Sampler::new(5, i % 64, i / 64) }
-            })
-            .collect();
-        let path = Path::default();
-        let [plain, open, general] = ShadingVariant::ALL.map(|kernel| {
-            let mut values = vec![Rgb::ZERO; samples.len()];
-            let session = path.begin_as(job(&scene), kernel, &Cancel::default());
-            let mut worker = session.worker();
-            worker.radiance(&mut samples.clone(), &Cancel::default(), &mut values);
-            values
-        });
-        assert!(plain == open && plain == general);
-        assert!(plain.iter().filter(|rgb| !rgb.is_black()).count() > 1000);
-    }
 }
 
 #[test]

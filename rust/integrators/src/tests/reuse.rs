@@ -9,9 +9,7 @@ use raywright_optics::{Diffuse, Rgb};
 use raywright_scene::fixtures::{cornell, furnace, inward_box, rectangle, scene, shape};
 use raywright_scene::materials::BsdfMix;
 use raywright_scene::textures::Needs;
-use raywright_scene::{
-    Camera, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, ShadingVariant, Shape,
-};
+use raywright_scene::{Camera, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, Shape};
 use std::sync::Arc;
 
 /// Return an integrator without roulette, which reused paths play relative to their second surface.
@@ -122,21 +120,6 @@ fn what_arrives_depends_on_the_group_alone() {
             assert_eq!(shared(&scene, &Path { reuse: side, ..Path::default() }, &samples, group, together), whole);
         }
     }
-}
-
-#[test]
-fn both_kernels_give_the_same_bits() {
-    let (scene, camera) = cornell(32, 32);
-    let samples = groups(&camera, 4, 100);
-    let run = |kernel| {
-        let mut values = vec![Rgb::ZERO; samples.len()];
-        let path = Path { reuse: 4, ..Path::default() };
-        let session = path.begin_as(job(&scene), kernel, &Cancel::default());
-        let mut worker = session.worker();
-        worker.radiance_in_groups(&mut samples.clone(), &[16; 100], &Cancel::default(), &mut values);
-        values
-    };
-    assert_eq!(run(ShadingVariant::Plain), run(ShadingVariant::Open));
 }
 
 /// A box of gray walls with a lamp in it, and further shapes.

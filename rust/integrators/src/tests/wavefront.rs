@@ -1,14 +1,21 @@
 //! Wavefront stages against paths in f64.
 
+use super::kinds::{self, floor};
 use super::{job, samples_of};
 use crate::wavefront::Wavefront;
 use crate::{CameraSample, Path, Session};
-use raywright_base::math::{DVec3, Ray};
+use raywright_base::math::{DVec3, Ray, Vec3};
 use raywright_base::sampling::{Sampler, warp};
 use raywright_base::workers::Cancel;
-use raywright_optics::Rgb;
+use raywright_optics::{AnyBsdf, Coated, Conductor, Dielectric, Diffuse, Mirror, Rgb};
+use raywright_scene::Sides;
 use raywright_scene::fixtures::{cornell, furnace, rectangle, scene, shape};
-use raywright_scene::{ConstantEnvironment, Light, PointLight, Scene, SceneDescription, ShadingVariant, Shape};
+use raywright_scene::materials::BsdfMix;
+use raywright_scene::textures::Needs;
+use raywright_scene::{
+    ConstantEnvironment, Light, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, Shape,
+};
+use raywright_shapes::Sphere;
 use std::sync::Arc;
 
 const DEPTH: u32 = 4;
@@ -30,11 +37,11 @@ fn found(session: &dyn Session, from: DVec3, count: u32) -> Vec<Rgb> {
 /// side.
 #[track_caller]
 fn assert_same(scene: &Scene, from: DVec3) {
-    assert!(Wavefront::takes(scene));
+    assert!(Wavefront::takes(&job(scene)));
     let path = Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, ..Path::default() };
     let count = 20_000;
-    let stages = found(&Wavefront::new(job(scene), path.max_depth, path.roulette_depth, false), from, count);
-    let session = path.begin_as(job(scene), ShadingVariant::Plain, &Cancel::default());
+    let stages = found(&Wavefront::new(job(scene), path.max_depth, path.roulette_depth, false, None), from, count);
+    let session = path.begin_in_general(job(scene), &Cancel::default());
     let wanted = found(&*session, from, count);
     let largest = wanted.iter().map(|value| value.max()).fold(0.0, f64::max);
     assert!(largest > 0.0);
@@ -43,6 +50,23 @@ fn assert_same(scene: &Scene, from: DVec3) {
     });
     let differ = differ.count();
     assert!(differ <= count as usize / 200, "{differ} of {count} differ");
+}
+
+/// Assert equal means by wavefront stages and in f64, within four standard errors (false alarm rate 1 in 16,000).
+#[track_caller]
+fn assert_same_mean(scene: &Scene, from: DVec3) {
+    assert!(Wavefront::takes(&job(scene)));
+    let path = Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, ..Path::default() };
+    let mean = |session: &dyn Session| {
+        let values = found(session, from, 200_000);
+        let mean = values.iter().copied().sum::<Rgb>() / values.len() as f64;
+        let square = values.iter().map(|value| (value[1] - mean[1]).powi(2)).sum::<f64>();
+        (mean[1], square / (values.len() as f64).powi(2))
+    };
+    let (got, one) = mean(&Wavefront::new(job(scene), path.max_depth, path.roulette_depth, false, None));
+    let (wanted, other) = mean(&*path.begin_in_general(job(scene), &Cancel::default()));
+    let error = (one + other).sqrt();
+    assert!(error < 0.02 * wanted && (got - wanted).abs() < 4.0 * error, "{got}, not {wanted} ± {error}");
 }
 
 #[test]
@@ -66,6 +90,102 @@ fn stages_know_all_lights() {
     same(vec![floor()], vec![point()]);
     // Enough lights for a light BVH.
     same(vec![floor(), lamp(-1.0, 9.0), lamp(0.5, 4.0), lamp(2.0, 1.0)], vec![]);
+}
+
+/// A room of matte walls, with a lamp at its ceiling, and these shapes in it.
+fn room(lamps: Vec<Shape>, inside: Vec<Shape>) -> Scene {
+    let wall = |corner: [f32; 3], u: [f32; 3], v: [f32; 3], colour| shape(rectangle(corner, u, v), colour, 0.0);
+    let [x, y, z] = [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
+    let mut shapes = vec![
+        wall([-2.0, 0.0, -2.0], z, x, [0.7; 3]),
+        wall([-2.0, 4.0, -2.0], x, z, [0.7; 3]),
+        wall([-2.0, 0.0, -2.0], x, y, [0.6; 3]),
+        wall([-2.0, 0.0, -2.0], y, z, [0.7, 0.2, 0.1]),
+        wall([2.0, 0.0, -2.0], z, y, [0.1, 0.2, 0.7]),
+    ];
+    shapes.extend(lamps);
+    shapes.extend(inside);
+    scene(SceneDescription { shapes, lights: vec![] })
+}
+
+/// A BSDF that is the same everywhere.
+#[derive(Debug)]
+struct Even(AnyBsdf);
+
+impl Material for Even {
+    fn bsdf(&self, _at: &ShadingPoint) -> BsdfMix {
+        BsdfMix::One(self.0)
+    }
+    fn needs(&self) -> Needs {
+        Needs::NONE
+    }
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+    fn constant(&self) -> Option<AnyBsdf> {
+        Some(self.0)
+    }
+}
+
+fn of(mesh: Mesh, bsdf: impl Into<AnyBsdf>) -> Shape {
+    Shape { material: Arc::new(Even(bsdf.into())), ..shape(mesh, [0.0; 3], 0.0) }
+}
+
+fn ball(x: f64, y: f64, z: f64, radius: f64, bsdf: impl Into<AnyBsdf>) -> Shape {
+    let sphere: Arc<dyn raywright_shapes::Shape> = Arc::new(Sphere { center: DVec3::new(x, y, z), radius });
+    Shape { surface: sphere.into(), ..of(floor(), bsdf) }
+}
+
+fn lamp_ball(x: f64, y: f64, z: f64, radius: f64, light: f64) -> Shape {
+    let lamp = shape(floor(), [0.0; 3], light);
+    Shape { surface: ball(x, y, z, radius, Diffuse { reflectance: Rgb::ZERO }).surface, ..lamp }
+}
+
+#[test]
+fn stages_know_spheres_and_all_ways_of_scattering() {
+    let eye = DVec3::new(0.1, 1.7, 1.8);
+    let panel = || shape(rectangle([-0.5, 3.9, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.1; 3], 10.0);
+    let rough = || Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), [0.4; 2]);
+    assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Mirror { reflectance: Rgb::splat(0.9) })]), eye);
+    assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Dielectric::new(1.5, 0.0))]), eye);
+    assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, rough())]), eye);
+    assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Dielectric::new(1.5, 0.4))]), eye);
+    assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Coated::new(Rgb::splat(0.5), 1.5, 0.3))]), eye);
+    // Lamps that are spheres, which f64 draws by other numbers, and of which each is asked at what is glossy.
+    let lamps = || vec![lamp_ball(-1.0, 3.0, 0.0, 0.3, 20.0), lamp_ball(1.0, 2.0, -1.0, 0.4, 8.0)];
+    let glossy = Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), [0.3; 2]);
+    let plate = of(rectangle([-1.0, 0.5, -1.0], [0.0, 0.0, 2.0], [2.0, 0.0, 0.0]), glossy);
+    assert_same_mean(&room(lamps(), vec![]), eye);
+    assert_same_mean(&room(lamps(), vec![plate]), eye);
+    // Within a lamp.
+    let mut around = lamp_ball(0.0, 2.0, 0.0, 6.0, 2.0);
+    around.emission.sides = Sides::Both;
+    assert_same_mean(&room(vec![around], vec![ball(0.4, 1.0, 0.2, 0.9, rough())]), eye);
+}
+
+/// A floor whose shading normals lean.
+fn leaning_floor() -> Mesh {
+    let lean = |x: f32, y: f32| Vec3::new(x, 1.0, y).normalize();
+    let normals = vec![lean(0.3, 0.0), lean(-0.2, 0.1), lean(0.0, -0.3), lean(0.1, 0.2)];
+    Mesh { normals: Some(normals), ..rectangle([-2.0, 0.3, -2.0], [0.0, 0.0, 4.0], [4.0, 0.0, 0.0]) }
+}
+
+#[test]
+fn stages_know_shading_normals_and_materials_that_vary() {
+    let eye = DVec3::new(0.1, 1.7, 1.8);
+    let panel = || shape(rectangle([-0.5, 3.9, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.1; 3], 10.0);
+    let rough = Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), [0.4; 2]);
+    assert_same(&room(vec![panel()], vec![shape(leaning_floor(), [0.7, 0.5, 0.3], 0.0)]), eye);
+    assert_same(&room(vec![panel()], vec![of(leaning_floor(), rough)]), eye);
+    assert_same(&room(vec![panel()], vec![of(leaning_floor(), Dielectric::new(1.5, 0.4))]), eye);
+    // Materials that are asked at each point.
+    let asked = |bsdf: BsdfMix| kinds::of(leaning_floor(), bsdf);
+    assert_same(&room(vec![panel()], vec![asked(Diffuse { reflectance: Rgb::splat(0.6) }.into())]), eye);
+    let two = BsdfMix::mixed(
+        (Rgb::splat(0.5), Diffuse { reflectance: Rgb::splat(0.6) }.into()),
+        (Rgb::splat(0.5), Mirror { reflectance: Rgb::ONE }.into()),
+    );
+    assert_same(&room(vec![panel()], vec![asked(two)]), eye);
 }
 
 #[test]
@@ -95,10 +215,10 @@ fn points_on_large_triangles_are_as_near_as_on_small_ones() {
     for size in [2f32, 2e3, 2e6] {
         let ground = rectangle([-0.45 * size, -0.55 * size, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]);
         let scene = scene(SceneDescription { shapes: vec![shape(ground, [0.5; 3], 0.0)], lights: lights.clone() });
-        assert!(Wavefront::takes(&scene));
+        assert!(Wavefront::takes(&job(&scene)));
         let mut samples = [0, 1, 2, 3].map(|number| CameraSample { ray, sampler: Sampler::new(3, 7, number) });
         let mut values = [Rgb::ZERO; 4];
-        let session = Wavefront::new(job(&scene), None, 4, false);
+        let session = Wavefront::new(job(&scene), None, 4, false, None);
         session.worker().radiance(&mut samples, &Cancel::default(), &mut values);
         for value in values {
             let off = value[1] / expected - 1.0;

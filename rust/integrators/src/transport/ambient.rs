@@ -1,12 +1,11 @@
 //! Light that is taken to arrive from everywhere in place of what is not followed.
 
-use super::features::Features;
 use super::worker::TransportWorker;
 use raywright_base::math::{Hit, Ray};
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{LookupContext, SurfaceInteraction};
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Adds what a surface sends back of it to a path of this throughput, that looks at it so, with such an index of
     /// refraction on the other side.
     #[inline]

@@ -1,6 +1,6 @@
 //! What rays come to.
 
-use super::features::{Carried, Features};
+use super::carried::Carried;
 use super::path_state::PathState;
 use super::worker::TransportWorker;
 use crate::CameraSample;
@@ -11,23 +11,21 @@ use raywright_base::math::Ray;
 use raywright_optics::Rgb;
 use raywright_scene::Plan;
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Sorts paths by what their rays have come to, so that blocks of them scatter by one kind of function: those that
     /// leave the scene take what light comes from there, and those that pass what they hit go on at once.
     pub(super) fn arrive(&mut self, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
         let mut arrivals = std::mem::take(&mut self.arrivals);
         arrivals.kinds.iter_mut().for_each(Vec::clear);
-        let is_nested = N::GENERAL && self.passing.is_nested();
-        if N::GENERAL {
-            self.passing.begin(self.scene, &self.now.rays, &self.hits);
-        }
+        let is_nested = self.passing.is_nested();
+        self.passing.begin(self.scene, &self.now.rays, &self.hits);
         if is_nested {
             arrivals.boundaries.resize(self.now.rays.len(), (1.0, MediumStack::NONE));
         }
         for i in 0..self.now.rays.len() {
             let mut hit = self.hits[i];
             if !hit.is_hit() {
-                if N::GENERAL && self.is_known(&self.now.carried[i]) {
+                if self.is_known(&self.now.carried[i]) {
                     continue;
                 }
                 let (ray, path) = (&self.now.rays.get(i), &self.now.paths[i]);
@@ -36,9 +34,9 @@ impl<N: Features> TransportWorker<'_, N> {
             }
             let mut shape = self.scene.geometry().locate(hit.primitive).0;
             let mut outside = 1.0;
-            if N::GENERAL && self.passing.is_needed() {
+            if self.passing.is_needed() {
                 let (ray, path, mut carried) = (self.now.rays.get(i), self.now.paths[i], self.now.carried[i]);
-                let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
+                let sampler = &mut samples[path.sample as usize].sampler;
                 let number = || sampler.one(Dimensions::of(path.bounce, carried.branch).mask());
                 match self.passing.meet(self.scene, i, (&ray, &hit), &carried.media, &mut carried.chance, number) {
                     Met::Nothing(ray, media) => {

@@ -7,7 +7,7 @@ use crate::parting::Parting;
 use crate::{CameraSample, LocalGuide};
 use raywright_base::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
 use raywright_base::sampling::SamplerLanes;
-use raywright_optics::{Diffuse, RgbLanes};
+use raywright_optics::RgbLanes;
 use raywright_scene::materials::{BsdfLanes, BsdfMix};
 use raywright_scene::{LightContextLanes, SurfaceInteraction, SurfaceInteractionLanes, SurfaceLanes};
 
@@ -66,12 +66,6 @@ impl Block<'_> {
             guides: [None; LANES],
             arrivals: [Arrival::GoesOn; LANES],
         }
-    }
-
-    /// The encounter of a lane with a diffuse surface.
-    #[inline(always)]
-    pub fn diffuse(&self, lane: usize) -> SurfaceInteraction<Diffuse> {
-        self.encounters.get(lane, Diffuse { reflectance: self.reflectance.get(lane) })
     }
 
     /// A ray that leaves the surface of a lane, at the time of the path that came there.

@@ -3,7 +3,7 @@
 use super::Follow;
 use super::aiming::{aim, aiming};
 use super::block::Block;
-use super::features::{Carried, Features};
+use super::carried::Carried;
 use super::guided::Arrival;
 use super::path_state::PathState;
 use super::splitting::Branch;
@@ -66,32 +66,27 @@ loops! {
     }
 }
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Sends paths on to where their surfaces scatter them.
     pub(super) fn go_on(&mut self, block: &Block) {
         if block.is_diffuse {
             return self.go_on_diffuse(block);
         }
-        if N::GENERAL && self.settings.follow == Follow::DeltaLobes {
+        if self.settings.follow == Follow::DeltaLobes {
             (0..block.count).filter(|&lane| block.goes_on[lane]).for_each(|lane| self.split(block, lane));
         }
-        if N::GENERAL && matches!(self.settings.follow, Follow::DeltaLobes | Follow::Nothing) {
+        if matches!(self.settings.follow, Follow::DeltaLobes | Follow::Nothing) {
             return;
         }
         let parts: [bool; LANES] = array::from_fn(|lane| block.goes_on[lane] && self.follows_both(block, lane));
-        if N::GENERAL {
-            (0..block.count).filter(|&lane| parts[lane]).for_each(|lane| self.split(block, lane));
-        }
+        (0..block.count).filter(|&lane| parts[lane]).for_each(|lane| self.split(block, lane));
         let splits: [u32; LANES] = array::from_fn(|lane| self.splits(block, lane));
         for branch in 0..splits.into_iter().max().unwrap_or(1) {
             // The first goes on as the path that it comes from.
             let number = |lane: usize| if branch == 0 { self.carried(block, lane).branch } else { branch };
             let numbers: [u32; LANES] = array::from_fn(number);
-            let dimensions: [Dimensions; LANES] = if N::GENERAL {
-                array::from_fn(|lane| Dimensions::of(block.paths[lane].bounce, numbers[lane]))
-            } else {
-                block.dimensions
-            };
+            let dimensions: [Dimensions; LANES] =
+                array::from_fn(|lane| Dimensions::of(block.paths[lane].bounce, numbers[lane]));
             let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
             let choices = dimensions.map(Dimensions::scattering_choice);
             block.numbers.one_and_two(self.level, &choices, &mut choice, &mut u);
@@ -136,9 +131,6 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Whether the path of a lane goes on along a direction that is drawn with this density.
     #[inline]
     pub(super) fn is_followed(&self, block: &Block, lane: usize, pdf: f64) -> bool {
-        if !N::GENERAL {
-            return true;
-        }
         // What is known is scattered by all but single directions.
         if self.is_at_known(block, lane) && !self.gathers_from(block, lane) && pdf != f64::INFINITY {
             return false;
@@ -181,12 +173,10 @@ impl<N: Features> TransportWorker<'_, N> {
             if self.survives(&mut path, Arrival::GoesOn, chances[lane]) {
                 going |= 1 << lane;
                 self.next.paths.push(path);
-                if N::GENERAL {
-                    let carried = self.carried(block, lane);
-                    let next = || BsdfSample::new(direction.get(lane), weight.get(lane), pdf[lane]);
-                    let footprint = if self.widths { self.widened(block, lane, &next()) } else { carried.footprint };
-                    self.next.carried.push(Carried { footprint, chance: -1.0, ..*carried });
-                }
+                let carried = self.carried(block, lane);
+                let next = || BsdfSample::new(direction.get(lane), weight.get(lane), pdf[lane]);
+                let footprint = if self.widths { self.widened(block, lane, &next()) } else { carried.footprint };
+                self.next.carried.push(Carried { footprint, chance: -1.0, ..*carried });
             }
         }
         self.next.rays.push_lanes(&block.all_leaving(origin, direction, [f64::INFINITY; LANES]), going);
@@ -202,11 +192,10 @@ impl<N: Features> TransportWorker<'_, N> {
         chances
     }
 
-    /// Whether roulette is played for a path after so many surfaces. The density with which a path comes to the second
-    /// point that it shares must be known.
+    /// Whether roulette is played for a path after so many surfaces.
     #[inline]
     pub(super) fn plays(&self, bounce: u32) -> bool {
-        (!N::SHARES || bounce > 1) && bounce >= self.settings.roulette_depth.min(roulette::AT_LATEST)
+        bounce >= self.settings.roulette_depth.min(roulette::AT_LATEST)
     }
 
     /// Plays roulette where it is to be played, by a uniform number, and says whether the path goes on.
@@ -231,7 +220,7 @@ impl<N: Features> TransportWorker<'_, N> {
         self.part(block, lane, &mut path, next);
         path.pdf = next.pdf;
         path.aim(branch.denser);
-        if N::GENERAL && branch.splits > 1 {
+        if branch.splits > 1 {
             path.throughput /= f64::from(branch.splits);
             path.pdf *= f64::from(branch.splits);
         }
@@ -239,22 +228,20 @@ impl<N: Features> TransportWorker<'_, N> {
         path.scale *= next.eta * next.eta;
         path.each = self.asks_each(block, lane);
         path.bounce = path.bounce.saturating_add(1);
-        if N::GENERAL && path.throughput.max() * path.scale < self.settings.least {
+        if path.throughput.max() * path.scale < self.settings.least {
             return false;
         }
         if !self.survives(&mut path, block.arrivals[lane], branch.chance) {
             return false;
         }
         self.next.paths.push(path);
-        if N::GENERAL {
-            let carried = self.carried(block, lane);
-            let footprint = if self.widths { self.widened(block, lane, next) } else { carried.footprint };
-            let media =
-                if self.passing.is_nested() && next.is_through { self.boundary(block, lane).1 } else { carried.media };
-            let (is_gathered, is_sharp_since) = self.gathered(block, lane, next.is_delta());
-            let (chance, branch) = (-1.0, branch.number);
-            self.next.carried.push(Carried { footprint, media, chance, branch, is_gathered, is_sharp_since });
-        }
+        let carried = self.carried(block, lane);
+        let footprint = if self.widths { self.widened(block, lane, next) } else { carried.footprint };
+        let media =
+            if self.passing.is_nested() && next.is_through { self.boundary(block, lane).1 } else { carried.media };
+        let (is_gathered, is_sharp_since) = self.gathered(block, lane, next.is_delta());
+        let (chance, branch) = (-1.0, branch.number);
+        self.next.carried.push(Carried { footprint, media, chance, branch, is_gathered, is_sharp_since });
         true
     }
 }

@@ -1,11 +1,10 @@
 //! Light that is asked for where paths have come to.
 
 use super::block::Block;
-use super::features::Features;
 use super::guided::density;
-use super::resampling::{ResampledLanes, resample};
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
+use crate::resampling::{ResampledLanes, resample};
 use raywright_base::math::{DVec3, LANES, VectorLanes};
 use raywright_base::simd::loops;
 use raywright_optics::{Bsdf, Diffuse, Null, Rgb, RgbLanes};
@@ -110,7 +109,7 @@ pub(crate) fn share(choice: f64, (number, asked): (u32, u32)) -> f64 {
     if asked == 1 { choice } else { ((choice + f64::from(number)) / f64::from(asked)).min(1f64.next_down()) }
 }
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Next-event estimation: draws light for each lane and queues the shadow rays.
     pub(super) fn direct_light(&mut self, block: &Block) {
         if block.is_diffuse {
@@ -131,7 +130,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Whether the path of a lane is at its first surface, where it may be split.
     #[inline]
     pub(super) fn is_first(&self, block: &Block, lane: usize) -> bool {
-        N::GENERAL && block.paths[lane].bounce == 0
+        block.paths[lane].bounce == 0
     }
 
     fn ask_diffuse(&mut self, block: &Block) {
@@ -225,7 +224,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// Whether each of few lights is asked where the path of a lane is.
     #[inline]
     pub(super) fn asks_each(&self, block: &Block, lane: usize) -> bool {
-        !N::PLAIN && !block.is_diffuse && self.scene.plan().asks_each(|| block.bsdf.get(lane).roughness())
+        !block.is_diffuse && self.scene.plan().asks_each(|| block.bsdf.get(lane).roughness())
     }
 
     /// Queues the shadow rays of light that was drawn, in the lanes where anything arrives of it.
@@ -253,7 +252,7 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     fn bring(&mut self, block: &Block, lane: usize, direction: DVec3, arriving: Rgb) {
         self.shadows.bring(block.paths[lane].sample, arriving);
-        if N::GENERAL && self.passing.is_nested() {
+        if self.passing.is_nested() {
             let is_through = !block.is_diffuse && block.other(lane).is_through(direction);
             let media = if is_through { self.boundary(block, lane).1 } else { self.carried(block, lane).media };
             self.shadows.start_in(media);

@@ -1,15 +1,13 @@
 //! Light that paths run into.
 
-use super::features::Features;
 use super::path_state::PathState;
 use super::weights::power_heuristic;
 use super::worker::TransportWorker;
 use raywright_base::math::{Hit, Ray};
 use raywright_optics::Rgb;
-use raywright_scene::textures::TexturePoint;
 use raywright_scene::{LightSampleContext, LookupContext, SurfacePoint};
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// What arrives from outside the scene at a ray that meets nothing.
     #[inline]
     pub(super) fn infinite_light(&self, ray: &Ray, path: &PathState) -> Rgb {
@@ -20,7 +18,7 @@ impl<N: Features> TransportWorker<'_, N> {
             return arriving;
         }
         let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves };
-        if !N::PLAIN && path.each {
+        if path.each {
             let weight = |drawn: f64| power_heuristic(path.pdf, drawn * self.asked_from(path));
             return lights.outside_weighed(&receiver, ray.direction, weight);
         }
@@ -32,7 +30,7 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     pub(super) fn shines(&self, surface: &SurfacePoint) -> bool {
         match surface.inner {
-            Some(_) if !N::PLAIN => !self.scene.emission_at(surface).is_dark(),
+            Some(_) => !self.scene.emission_at(surface).is_dark(),
             _ => self.scene.lights().shines(surface.shape),
         }
     }
@@ -47,17 +45,13 @@ impl<N: Features> TransportWorker<'_, N> {
         gaze: LookupContext,
     ) -> Rgb {
         let cosine = -ray.direction.dot(surface.normal);
-        let emission = if N::PLAIN {
-            self.scene.lights().emission(surface.shape).towards(cosine, &TexturePoint::NOWHERE)
-        } else {
-            self.scene.emission_at(surface).sent(self.scene.geometry(), ray, hit, surface, || gaze)
-        };
+        let emission = self.scene.emission_at(surface).sent(self.scene.geometry(), ray, hit, surface, || gaze);
         if emission.is_black() || path.pdf == f64::INFINITY {
             return emission;
         }
         let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves: gaze.waves };
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
-        let drawn = if !N::PLAIN && path.each {
+        let drawn = if path.each {
             lights.own_pdf(geometry, &receiver, ray, hit, cosine)
         } else {
             lights.surface_pdf(geometry, &receiver, ray, hit, cosine)
@@ -68,6 +62,6 @@ impl<N: Features> TransportWorker<'_, N> {
     /// How often light was asked where the path was scattered last.
     #[inline]
     fn asked_from(&self, path: &PathState) -> f64 {
-        if N::GENERAL && path.bounce == 1 { f64::from(self.settings.light_samples) } else { 1.0 }
+        if path.bounce == 1 { f64::from(self.settings.light_samples) } else { 1.0 }
     }
 }

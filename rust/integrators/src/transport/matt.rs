@@ -2,18 +2,18 @@
 //! surface reflects in single directions, as a coat does, is not known, and is followed as a mirror's.
 
 use super::block::Block;
-use super::features::{Carried, Features};
+use super::carried::Carried;
 use super::known::Visit;
 use super::worker::TransportWorker;
 use crate::is_matt;
 use raywright_optics::Rgb;
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Whether light at the surface of a lane is known.
     #[inline]
     pub(super) fn is_at_known(&self, block: &Block, lane: usize) -> bool {
         let has_path = lane < block.count && !block.is_diffuse;
-        N::GENERAL && self.settings.gather.is_some() && has_path && is_matt(block.bsdf.get(lane))
+        self.settings.gather.is_some() && has_path && is_matt(block.bsdf.get(lane))
     }
 
     /// Whether the path of a lane looks about from its surface.
@@ -27,14 +27,14 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     pub(super) fn is_known(&self, carried: &Carried) -> bool {
         let knows = self.settings.gather.is_some_and(|gather| gather.caustic);
-        N::GENERAL && knows && carried.is_gathered && carried.is_sharp_since
+        knows && carried.is_gathered && carried.is_sharp_since
     }
 
     /// Whether what lights send to the surface of a lane was known where its path was gathered.
     #[inline]
     pub(super) fn is_light_known(&self, block: &Block, lane: usize) -> bool {
         let knows = self.settings.gather.is_some_and(|gather| gather.caustic);
-        N::GENERAL && knows && self.carried(block, lane).is_gathered && !self.is_at_known(block, lane)
+        knows && self.carried(block, lane).is_gathered && !self.is_at_known(block, lane)
     }
 
     /// What is known of the light at the surface of a lane, for a sample of a number.

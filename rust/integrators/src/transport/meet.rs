@@ -1,7 +1,6 @@
 //! How surfaces scatter that paths have come to.
 
 use super::block::Block;
-use super::features::Features;
 use super::guided::Arrival;
 use super::worker::TransportWorker;
 use crate::CameraSample;
@@ -34,7 +33,7 @@ loops! {
     }
 }
 
-impl<'a, N: Features> TransportWorker<'a, N> {
+impl<'a> TransportWorker<'a> {
     /// Finds out how surfaces scatter.
     pub(super) fn meet(&mut self, block: &mut Block<'a>, samples: &mut [CameraSample], radiance: &mut [Rgb]) {
         let mut directions = VectorLanes::ZERO;
@@ -46,7 +45,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         self.set_waves(block);
         for lane in 0..LANES {
             let path = &block.paths[lane];
-            block.numbers.set(lane, &samples[Self::own(path.sample, samples.len())].sampler);
+            block.numbers.set(lane, &samples[path.sample as usize].sampler);
             block.dimensions[lane] = Dimensions::of(path.bounce, self.carried(block, lane).branch);
         }
         if block.is_diffuse {
@@ -64,10 +63,6 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                     None => self.textured(block, lane),
                 };
                 block.reflectance.set(lane, reflectance);
-                if N::SHARES && block.goes_on[lane] {
-                    let (path, primitive) = (block.paths[lane], block.hits[lane].primitive);
-                    block.paths[lane] = self.visit(path, &block.diffuse(lane), primitive, samples.len());
-                }
             }
         } else {
             self.meet_others(block, samples, radiance);
@@ -80,7 +75,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     /// What a diffuse surface reflects that is not alike everywhere, or is seen by a ray that has a width. A padded
     /// lane is left as it is.
     fn textured(&self, block: &mut Block, lane: usize) -> Rgb {
-        if N::PLAIN || lane >= block.count {
+        if lane >= block.count {
             return Rgb::ZERO;
         }
         let (ray, hit, surface) = (&block.rays[lane], &block.hits[lane], block.surfaces.get(lane));
@@ -95,7 +90,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         block.bsdf.clear();
         for lane in 0..block.count {
             let (surface, width) = (block.surfaces.get(lane), block.width[lane]);
-            let outside = if N::GENERAL && self.passing.is_nested() { self.boundary(block, lane).0 } else { 1.0 };
+            let outside = if self.passing.is_nested() { self.boundary(block, lane).0 } else { 1.0 };
             let (ray, hit) = (block.rays[lane], block.hits[lane]);
             let (gaze, (outside, parting)) = (self.gaze(block, lane), self.parting(block, lane, &surface, outside));
             let bsdf = match self.scene.plan().constant(surface.shape, surface.is_front(&ray)) {
@@ -107,11 +102,9 @@ impl<'a, N: Features> TransportWorker<'a, N> {
                     Cow::Owned(here.into_bsdf())
                 }
             };
-            if N::GENERAL {
-                block.parting[lane] = parting.filter(|parting| parting.waits(&*bsdf));
-                if parting.is_some() && block.parting[lane].is_none() {
-                    block.paths[lane].end_all_but_hero();
-                }
+            block.parting[lane] = parting.filter(|parting| parting.waits(&*bsdf));
+            if parting.is_some() && block.parting[lane].is_none() {
+                block.paths[lane].end_all_but_hero();
             }
             if bsdf.transmits() {
                 block.receivers.set(lane, &LightSampleContext::free(surface.position));
@@ -124,23 +117,20 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             let wo = block.encounters.get(lane, block.bsdf.get(lane)).wo();
             block.bsdf.prepare(wo);
             let here = block.encounters.get(lane, block.bsdf.get(lane));
-            if N::SHARES {
-                path = self.visit(path, &here, block.hits[lane].primitive, samples.len());
-            }
             path.meet(here.bsdf().repeat_correction());
             if self.guide.is_some() {
-                let sampler = &mut samples[Self::own(path.sample, samples.len())].sampler;
+                let sampler = &mut samples[path.sample as usize].sampler;
                 let number = || sampler.one(block.dimensions[lane].roulette());
                 (block.guides[lane], block.arrivals[lane]) = self.guided(&mut path, &here, number);
             }
             block.goes_on[lane] = block.arrivals[lane] != Arrival::Ends;
-            if N::GENERAL && block.goes_on[lane] {
+            if block.goes_on[lane] {
                 let light = &mut radiance[path.sample as usize];
                 self.add_ambient(&here, (&ray, &hit), (gaze, outside), path.throughput, light);
             }
             block.paths[lane] = path;
-            if N::GENERAL && block.goes_on[lane] {
-                let number = samples[Self::own(path.sample, samples.len())].sampler.number();
+            if block.goes_on[lane] {
+                let number = samples[path.sample as usize].sampler.number();
                 radiance[path.sample as usize] += self.known_light(block, lane, number);
             }
         }

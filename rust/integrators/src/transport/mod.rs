@@ -5,17 +5,16 @@ mod ambient;
 mod arrivals;
 mod arrive;
 mod block;
+mod carried;
 mod continuation;
 mod direct_light;
 mod emission;
-mod features;
 mod first_seen;
 mod guided;
 mod known;
 mod matt;
 mod meet;
 mod path_state;
-mod resampling;
 mod shade;
 mod splitting;
 mod waves;
@@ -26,12 +25,11 @@ mod worker;
 use super::wavefront::Wavefront;
 use super::{Guide, Job, Session, Worker};
 pub(super) use direct_light::share;
-use features::{Features, General, Open, Plain, Sharing};
 pub use first_seen::FirstSeen;
 pub(super) use known::{Gather, MattLight, Visit};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{Scene, ShadingVariant};
+use raywright_scene::Scene;
 use std::sync::Arc;
 pub(super) use weights::power_heuristic;
 pub(super) use widths::widened;
@@ -111,22 +109,22 @@ impl Settings {
     /// Begins with stages over columns where they have what the scene and these settings need, and otherwise with the
     /// variant that has it.
     pub fn begin<'a>(self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        if self.are_plain() && !self.guided && Wavefront::takes(job.scene) {
-            return Box::new(Wavefront::new(job, self.max_depth, self.roulette_depth, self.shares));
+        let guide = if self.guided { Guide::of(job.scene, cancel) } else { None };
+        if self.are_plain() && Wavefront::takes(&job) {
+            return Box::new(Wavefront::new(job, self.max_depth, self.roulette_depth, self.shares, guide));
         }
-        self.begin_as(job, job.scene.plan().variant(), cancel)
+        Box::new(Transport { settings: self, job, guide, known: None })
     }
 
-    /// As [`Settings::begin`], with this variant or one that can do more.
-    pub fn begin_as<'a>(self, job: Job<'a>, variant: ShadingVariant, cancel: &Cancel) -> Box<dyn Session + 'a> {
+    /// As [`Settings::begin`], by the loop that knows everything.
+    pub fn begin_in_general<'a>(self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let guide = if self.guided { Guide::of(job.scene, cancel) } else { None };
-        Box::new(Transport { settings: self, job, variant, guide, known: None })
+        Box::new(Transport { settings: self, job, guide, known: None })
     }
 
     /// As [`Settings::begin`], where light at matt surfaces is known.
     pub fn begin_with<'a>(self, job: Job<'a>, known: Arc<dyn MattLight + 'a>) -> Box<dyn Session + 'a> {
-        let variant = ShadingVariant::General;
-        Box::new(Transport { settings: self, job, variant, guide: None, known: Some(known) })
+        Box::new(Transport { settings: self, job, guide: None, known: Some(known) })
     }
 }
 
@@ -134,29 +132,15 @@ impl Settings {
 struct Transport<'a> {
     settings: Settings,
     job: Job<'a>,
-    variant: ShadingVariant,
     /// Where light comes from by way of what is sharp, if paths are guided and there is any.
     guide: Option<Arc<Guide>>,
     /// What is known of the light at matt surfaces.
     known: Option<Arc<dyn MattLight + 'a>>,
 }
 
-impl Transport<'_> {
-    fn at_work<N: Features>(&self) -> Box<dyn Worker + '_> {
-        Box::new(TransportWorker::<N>::new(self.settings, &self.job, self.guide.as_deref(), self.known.as_deref()))
-    }
-}
-
 impl Session for Transport<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        let (shares, are_plain) = (self.settings.shares, self.settings.are_plain());
-        match self.variant {
-            ShadingVariant::Plain if shares => self.at_work::<Sharing<Plain>>(),
-            _ if shares => self.at_work::<Sharing<Open>>(),
-            ShadingVariant::Plain if are_plain => self.at_work::<Plain>(),
-            ShadingVariant::Open if are_plain => self.at_work::<Open>(),
-            _ => self.at_work::<General>(),
-        }
+        Box::new(TransportWorker::new(self.settings, &self.job, self.guide.as_deref(), self.known.as_deref()))
     }
 }
 
@@ -167,5 +151,6 @@ impl Session for Transport<'_> {
 /// at times of their own; and a filtered texture shows to each what is of its own width.
 pub(super) fn can_share(scene: &Scene) -> bool {
     let needs = scene.plan().needs();
-    scene.plan().suits(ShadingVariant::Open) && !needs.motion && !scene.lights().is_dark()
+    let is_open = !(needs.masks || needs.nested || needs.media || needs.points.width || needs.waves);
+    is_open && !needs.motion && !scene.lights().is_dark()
 }

@@ -1,6 +1,6 @@
 //! Paths on their way.
 
-use super::features::Carried;
+use super::carried::Carried;
 use raywright_base::math::{DVec3, RayQueue};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;

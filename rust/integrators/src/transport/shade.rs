@@ -1,7 +1,7 @@
 //! What happens where paths have come to.
 
 use super::block::Block;
-use super::features::{Carried, Features};
+use super::carried::Carried;
 use super::worker::TransportWorker;
 use crate::CameraSample;
 use raywright_base::math::LANES;
@@ -9,7 +9,7 @@ use raywright_base::timing::{Part, count, timed};
 use raywright_optics::Rgb;
 use std::array;
 
-impl<'a, N: Features> TransportWorker<'a, N> {
+impl<'a> TransportWorker<'a> {
     /// Takes paths, at most sixteen, from their rays' hits to their next rays.
     pub(super) fn shade(
         &mut self,
@@ -34,7 +34,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
     /// What the path of a lane carries.
     #[inline]
     pub(super) fn carried(&self, block: &Block, lane: usize) -> &Carried {
-        if N::GENERAL { &self.now.carried[block.index[lane] as usize] } else { &Carried::NONE }
+        &self.now.carried[block.index[lane] as usize]
     }
 
     /// Looks up where paths have come to.
@@ -48,7 +48,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block.paths[lane] = self.now.paths[index];
             block.goes_on[lane] = false;
             block.width[lane] = 0.0;
-            if N::GENERAL && self.widths {
+            if self.widths {
                 block.width[lane] = self.now.carried[index].footprint.at(self.hits[index].t).width;
             }
         }

@@ -1,7 +1,6 @@
 //! Paths that go on in several ways at once.
 
 use super::block::Block;
-use super::features::Features;
 use super::worker::TransportWorker;
 use raywright_optics::Bsdf;
 use raywright_scene::Interaction;
@@ -19,11 +18,11 @@ pub(super) struct Branch {
     pub chance: f64,
 }
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Into how many the path of a lane is split.
     #[inline]
     pub(super) fn splits(&self, block: &Block, lane: usize) -> u32 {
-        if let Some(gather) = self.settings.gather.filter(|_| N::GENERAL) {
+        if let Some(gather) = self.settings.gather {
             return if self.gathers_from(block, lane) { gather.rays.max(1) } else { 1 };
         }
         if self.is_first(block, lane) { self.settings.splits } else { 1 }
@@ -35,7 +34,7 @@ impl<N: Features> TransportWorker<'_, N> {
     #[inline]
     pub(super) fn follows_both(&self, block: &Block, lane: usize) -> bool {
         const SURFACES: u32 = 3;
-        if !N::GENERAL || self.settings.gather.is_none() || lane >= block.count {
+        if self.settings.gather.is_none() || lane >= block.count {
             return false;
         }
         let (bounce, bsdf) = (block.paths[lane].bounce, block.bsdf.get(lane));

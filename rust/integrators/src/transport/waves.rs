@@ -1,7 +1,6 @@
 //! Paths that carry wavelengths in place of red, green and blue.
 
 use super::block::Block;
-use super::features::Features;
 use super::path_state::PathState;
 use super::worker::TransportWorker;
 use crate::CameraSample;
@@ -12,10 +11,10 @@ use raywright_optics::spectra::Waves;
 use raywright_optics::{BsdfSample, Dispersive, Rgb};
 use raywright_scene::{LookupContext, SurfacePoint};
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Draws the wavelengths of samples, in a scene that needs them.
     pub(super) fn draw_waves(&mut self, samples: &mut [CameraSample]) {
-        if N::GENERAL && self.scene.plan().needs().waves {
+        if self.scene.plan().needs().waves {
             self.waves.clear();
             let known = self.known;
             self.waves.extend(samples.iter_mut().map(|sample| {
@@ -28,7 +27,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// The wavelengths of a path for a sample; none for red, green and blue.
     #[inline]
     pub(super) fn waves(&self, sample: u32) -> Option<Waves> {
-        if N::GENERAL { self.waves.get(sample as usize).copied() } else { None }
+        self.waves.get(sample as usize).copied()
     }
 
     /// How the path of a lane looks at a point.
@@ -39,7 +38,7 @@ impl<N: Features> TransportWorker<'_, N> {
 
     /// Says at which wavelengths light is asked for.
     pub(super) fn set_waves(&self, block: &mut Block) {
-        if N::GENERAL && !self.waves.is_empty() {
+        if !self.waves.is_empty() {
             for lane in 0..LANES {
                 block.receivers.set_waves(lane, self.waves(block.paths[lane].sample));
             }
@@ -68,7 +67,7 @@ impl<N: Features> TransportWorker<'_, N> {
     /// far.
     #[inline]
     pub(super) fn part(&self, block: &Block, lane: usize, path: &mut PathState, next: &BsdfSample) {
-        if let (true, Some(parting)) = (N::GENERAL, &block.parting[lane]) {
+        if let Some(parting) = &block.parting[lane] {
             if next.is_through {
                 path.end_all_but_hero();
             } else if !path.single {
@@ -79,10 +78,8 @@ impl<N: Features> TransportWorker<'_, N> {
 
     /// Makes of what was found at the wavelengths of samples what they look like.
     pub(super) fn see_waves(&self, radiance: &mut [Rgb]) {
-        if N::GENERAL {
-            for (light, waves) in radiance.iter_mut().zip(&self.waves) {
-                *light = waves.seen(*light);
-            }
+        for (light, waves) in radiance.iter_mut().zip(&self.waves) {
+            *light = waves.seen(*light);
         }
     }
 }

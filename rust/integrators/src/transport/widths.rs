@@ -1,12 +1,11 @@
 //! How wide the bundle of neighbouring rays is along a path.
 
 use super::block::Block;
-use super::features::Features;
 use super::worker::TransportWorker;
 use raywright_optics::BsdfSample;
 use raywright_scene::Footprint;
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// The bundle of rays after the surface of a lane.
     pub(super) fn widened(&self, block: &Block, lane: usize, next: &BsdfSample) -> Footprint {
         let before = &self.carried(block, lane).footprint;

@@ -4,14 +4,12 @@ use super::Follow;
 use super::Settings;
 use super::arrivals::Arrivals;
 use super::block::Block;
-use super::features::{Carried, Features};
+use super::carried::Carried;
 use super::guided::{Arrival, arrive};
 use super::known::MattLight;
 use super::path_state::{PathState, Queue};
-use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
 use crate::passing::Passing;
-use crate::path_sharing::{PathSharing, SharingPoint};
 use crate::shadows::Shadows;
 use crate::{CameraSample, Guide, Job, LocalGuide, Worker, is_matt};
 use raywright_base::math::{Hit, LANES};
@@ -22,10 +20,9 @@ use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Footprint, Interaction, LightLanes, Plan, Scene, SurfaceInteraction};
-use std::marker::PhantomData;
 
 /// What one thread works with, see [`Settings::begin`].
-pub(super) struct TransportWorker<'a, N> {
+pub(super) struct TransportWorker<'a> {
     pub(super) settings: Settings,
     pub(super) scene: &'a Scene,
     pub(super) level: Level,
@@ -49,26 +46,22 @@ pub(super) struct TransportWorker<'a, N> {
     pub(super) shadows: Shadows,
     /// What is drawn of each of few lights.
     pub(super) each: Vec<LightLanes>,
-    pub(super) sharing: PathSharing,
     /// The wavelengths of samples; none where they find red, green and blue.
     pub(super) waves: Vec<Waves>,
-    /// What samples find for themselves, and then what they find for sharing.
-    found: Vec<Rgb>,
-    features: PhantomData<N>,
 }
 
-impl<'a, N: Features> TransportWorker<'a, N> {
+impl<'a> TransportWorker<'a> {
     pub fn new(settings: Settings, job: &Job<'a>, guide: Option<&'a Guide>, known: Option<&'a dyn MattLight>) -> Self {
         let &Job { scene, footprint, .. } = job;
         let needs = scene.plan().needs();
         let level = Level::current().unwrap_or(Level::Scalar);
-        let widths = N::GENERAL && needs.points.width;
+        let widths = needs.points.width;
         Self {
             settings,
             scene,
             level,
             footprint,
-            passing: Passing::new(N::GENERAL && needs.masks, N::GENERAL && needs.nested),
+            passing: Passing::new(needs.masks, needs.nested),
             widths,
             in_columns: settings.are_plain(),
             guide,
@@ -80,10 +73,7 @@ impl<'a, N: Features> TransportWorker<'a, N> {
             block: None,
             shadows: Shadows::default(),
             each: Vec::new(),
-            sharing: PathSharing::new(level),
             waves: Vec::new(),
-            found: Vec::new(),
-            features: PhantomData,
         }
     }
 
@@ -92,15 +82,13 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         self.now.clear();
         samples.iter().for_each(|sample| self.now.rays.push(&sample.ray));
         self.now.paths.extend((0u32..).zip(samples).map(|(sample, _)| PathState::of_camera(sample)));
-        if N::GENERAL {
-            let start = Carried { footprint: self.footprint, ..Carried::default() };
-            self.now.carried.resize(samples.len(), start);
-            if self.passing.is_nested() {
-                let mut media = Vec::new();
-                MediumStack::at(self.scene, self.now.rays.rows(), &mut media);
-                for (carried, media) in self.now.carried.iter_mut().zip(media) {
-                    carried.media = media;
-                }
+        let start = Carried { footprint: self.footprint, ..Carried::default() };
+        self.now.carried.resize(samples.len(), start);
+        if self.passing.is_nested() {
+            let mut media = Vec::new();
+            MediumStack::at(self.scene, self.now.rays.rows(), &mut media);
+            for (carried, media) in self.now.carried.iter_mut().zip(media) {
+                carried.media = media;
             }
         }
     }
@@ -129,48 +117,6 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
-    /// The index of a sample, for what a path finds for it or for sharing.
-    #[inline]
-    pub(super) fn own(sample: u32, samples: usize) -> usize {
-        let index = sample as usize;
-        if N::SHARES && index >= samples { index - samples } else { index }
-    }
-
-    /// Records the first and the second point of a path that shares. If the light beyond is shared, the path goes on as
-    /// the path of its sample's number plus `samples`.
-    #[inline]
-    pub(super) fn visit<S: Bsdf>(
-        &mut self,
-        mut path: PathState,
-        here: &SurfaceInteraction<S>,
-        primitive: u32,
-        samples: usize,
-    ) -> PathState {
-        if path.bounce > 1 {
-            return path;
-        }
-        let Some(reflectance) = here.bsdf().diffuse().filter(|_| !here.is_as_given()) else { return path };
-        // A surface that one normal shows from above and the other from below scatters nothing.
-        if here.cosine() <= 0.0 || reflectance.is_black() {
-            return path;
-        }
-        let (normal, position) = (here.normal(), here.position());
-        let point = SharingPoint {
-            position,
-            origin: here.ray_origin().ray(normal).origin,
-            shading: here.shading_normal().as_vec3(),
-            normal: normal.as_vec3(),
-            primitive,
-        };
-        if path.bounce == 0 {
-            self.sharing.add_first(path.sample, &point, path.throughput * reflectance);
-        } else if !here.is_bent() && self.sharing.add_second(path.sample, &point, path.throughput) {
-            path.throughput = Rgb::ONE;
-            path.sample += samples as u32;
-        }
-        path
-    }
-
     /// Where light comes from by way of what is sharp, at a point that a path has come to; and whether the path goes on
     /// there.
     pub(super) fn guided<S: Bsdf>(
@@ -183,15 +129,13 @@ impl<'a, N: Features> TransportWorker<'a, N> {
         if !is_matt(here.bsdf()) {
             return (None, Arrival::GoesOn);
         }
-        // The density with which a path comes to the second point that it shares must be known.
-        let may_aim = !N::SHARES || path.bounce > 0;
-        let local = if may_aim { guide.at(here.position()) } else { None };
+        let local = guide.at(here.position());
         let arrival = arrive(path, local.as_ref(), number);
         (local, arrival)
     }
 }
 
-impl<N: Features> TransportWorker<'_, N> {
+impl TransportWorker<'_> {
     /// Follows the paths of these samples to their ends, and adds what they find.
     fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         self.draw_waves(samples);
@@ -214,42 +158,17 @@ impl<N: Features> TransportWorker<'_, N> {
     }
 }
 
-impl<N: Features> Worker for TransportWorker<'_, N> {
+impl Worker for TransportWorker<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         assert_eq!(samples.len(), radiance.len());
-        if N::SHARES {
-            return self.radiance_in_groups(samples, &vec![1; samples.len()], cancel, radiance);
-        }
         radiance.fill(Rgb::ZERO);
         // Each sample is on its own, so that a batch of paths that split may be worked on in parts.
         let gathered = self.settings.gather.map_or(1, |gather| gather.rays.max(1));
         let splits = self.settings.splits.max(self.settings.light_samples).max(gathered) as usize;
-        let together = if N::GENERAL && self.settings.follow == Follow::DeltaLobes { 512 } else { 4096 };
-        let part = if N::GENERAL { (together / splits).max(16) } else { samples.len().max(1) };
+        let together = if self.settings.follow == Follow::DeltaLobes { 512 } else { 4096 };
+        let part = (together / splits).max(16);
         for (samples, radiance) in samples.chunks_mut(part).zip(radiance.chunks_mut(part)) {
             self.follow(samples, cancel, radiance);
         }
-    }
-
-    fn radiance_in_groups(
-        &mut self,
-        samples: &mut [CameraSample],
-        groups: &[u32],
-        cancel: &Cancel,
-        radiance: &mut [Rgb],
-    ) {
-        if !N::SHARES {
-            return self.radiance(samples, cancel, radiance);
-        }
-        let mut found = std::mem::take(&mut self.found);
-        found.clear();
-        found.resize(2 * samples.len(), Rgb::ZERO);
-        self.sharing.begin(samples.len());
-        self.follow(samples, cancel, &mut found);
-        let (own, shared) = found.split_at(samples.len());
-        radiance.copy_from_slice(own);
-        let chance = |sample: u32| samples[sample as usize].sampler.one(Dimensions::SHARING);
-        self.sharing.share(self.scene, groups, shared, cancel, radiance, chance);
-        self.found = found;
     }
 }

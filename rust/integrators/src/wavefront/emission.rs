@@ -1,8 +1,8 @@
 //! Light that paths run into, weighed against having been drawn.
 
 use super::direct_light::power_heuristic;
-use super::queues::PathQueue;
-use raywright_base::math::{DVec3, Hit, Ray};
+use super::queues::{Flags, PathQueue};
+use raywright_base::math::{DVec3, Hit, LANES, Ray};
 use raywright_optics::Rgb;
 use raywright_scene::textures::TexturePoint;
 use raywright_scene::{LightSampleContext, Scene, SurfaceBlock};
@@ -15,6 +15,11 @@ fn receiver(queue: &PathQueue, path: usize) -> LightSampleContext {
     LightSampleContext { position: queue.rays.origin(path), normal, waves: None }
 }
 
+/// Whether each of few lights was asked where a path set out.
+fn asked_each(queue: &PathQueue, path: usize) -> bool {
+    queue.flags.get(path).is_some_and(|flags| flags & Flags::ASKED_EACH != 0)
+}
+
 fn throughput(queue: &PathQueue, path: usize) -> Rgb {
     let [r, g, b] = &queue.throughput;
     Rgb::new(r[path].into(), g[path].into(), b[path].into())
@@ -23,45 +28,59 @@ fn throughput(queue: &PathQueue, path: usize) -> Rgb {
 /// Adds what arrives from outside the scene along the rays of paths that meet nothing.
 pub(super) fn add_outside(scene: &Scene, queue: &PathQueue, which: &[u32], radiance: &mut [Rgb]) {
     let lights = scene.lights();
-    if let Some(arriving) = lights.constant_sky() {
-        let [x, y, z] = &queue.normal;
-        for &i in which {
-            let i = i as usize;
-            let [to_x, to_y, to_z] = queue.rays.direction.each_ref().map(|column| column[i]);
-            let cosine = (to_x * x[i] + to_y * y[i] + to_z * z[i]).max(0.0);
-            // 1 for a camera's ray, whose density is infinite.
-            let weight = power_heuristic(queue.pdf[i], cosine * FRAC_1_PI);
-            radiance[queue.sample[i] as usize] += throughput(queue, i) * arriving * f64::from(weight);
-        }
-        return;
-    }
+    let constant = lights.constant_sky();
     for &i in which {
         let i = i as usize;
+        let pdf = queue.pdf[i];
+        let [x, y, z] = queue.normal.each_ref().map(|column| column.get(i).copied().unwrap_or(0.0));
+        if let Some(arriving) = constant.filter(|_| pdf == f32::INFINITY || x * x + y * y + z * z > 0.0) {
+            let [to_x, to_y, to_z] = queue.rays.direction.each_ref().map(|column| column[i]);
+            let cosine = (to_x * x + to_y * y + to_z * z).max(0.0);
+            // 1 for a camera's ray, whose density is infinite.
+            let weight = power_heuristic(pdf, cosine * FRAC_1_PI);
+            radiance[queue.sample[i] as usize] += throughput(queue, i) * arriving * f64::from(weight);
+            continue;
+        }
         let direction = queue.rays.direction(i);
         let arriving = lights.infinite_radiance(direction);
         if arriving.is_black() {
             continue;
         }
-        let pdf = queue.pdf[i];
-        let weight = if pdf == f32::INFINITY {
-            1.0
+        let weight = |drawn: f64| f64::from(power_heuristic(pdf, drawn as f32));
+        let arriving = if pdf == f32::INFINITY {
+            arriving
+        } else if asked_each(queue, i) {
+            lights.outside_weighed(&receiver(queue, i), direction, weight)
         } else {
-            power_heuristic(pdf, lights.infinite_pdf(&receiver(queue, i), direction) as f32)
+            arriving * weight(lights.infinite_pdf(&receiver(queue, i), direction))
         };
-        radiance[queue.sample[i] as usize] += throughput(queue, i) * arriving * f64::from(weight);
+        radiance[queue.sample[i] as usize] += throughput(queue, i) * arriving;
     }
 }
 
-/// Adds what surfaces emit that paths have met.
-pub(super) fn add_emitted(scene: &Scene, queue: &PathQueue, surfaces: &SurfaceBlock, radiance: &mut [Rgb]) {
+/// Adds what surfaces emit that paths have met, with rays so wide.
+pub(super) fn add_emitted(
+    scene: &Scene,
+    (queue, hits): (&PathQueue, &[Hit]),
+    surfaces: &SurfaceBlock,
+    width: &[f32; LANES],
+    radiance: &mut [Rgb],
+) {
     let lights = scene.lights();
     for lane in 0..surfaces.count {
         let shape = surfaces.shape[lane];
-        if !lights.shines(shape) {
+        let is_instance = !hits.is_empty() && scene.geometry().instances_of(shape).is_some();
+        if !(is_instance || lights.shines(shape)) {
             continue;
         }
         let cosine = f64::from(surfaces.cosine[lane]) * if surfaces.is_front[lane] == 0 { -1.0 } else { 1.0 };
-        let emission = lights.emission(shape).towards(cosine, &TexturePoint::NOWHERE);
+        let emission = if is_instance || lights.emission(shape).needs().any() {
+            let (ray, hit) = scene.geometry().hit_of_lane((&queue.rays, hits), surfaces, lane);
+            let surface = scene.geometry().surface(&ray, &hit);
+            scene.emission_at(&surface).sent(scene.geometry(), &ray, &hit, &surface, || f64::from(width[lane]))
+        } else {
+            lights.emission(shape).towards(cosine, &TexturePoint::NOWHERE)
+        };
         if emission.is_black() {
             continue;
         }
@@ -70,10 +89,19 @@ pub(super) fn add_emitted(scene: &Scene, queue: &PathQueue, surfaces: &SurfaceBl
         let weight = if pdf == f32::INFINITY {
             1.0
         } else {
-            let ray = Ray::new(queue.rays.origin(i), queue.rays.direction(i));
-            let t = (surfaces.position.get(lane) - ray.origin).length();
-            let hit = Hit { t, primitive: surfaces.primitive[lane], ..Hit::MISS };
-            let drawn = lights.surface_pdf(scene.geometry(), &receiver(queue, i), &ray, &hit, cosine);
+            let (geometry, receiver) = (scene.geometry(), receiver(queue, i));
+            let (ray, hit) = if is_instance {
+                geometry.hit_of_lane((&queue.rays, hits), surfaces, lane)
+            } else {
+                let ray = Ray::new(queue.rays.origin(i), queue.rays.direction(i));
+                let t = (surfaces.position.get(lane) - ray.origin).length();
+                (ray, Hit { t, primitive: surfaces.primitive[lane], ..Hit::MISS })
+            };
+            let drawn = if asked_each(queue, i) {
+                lights.own_pdf(geometry, &receiver, &ray, &hit, cosine)
+            } else {
+                lights.surface_pdf(geometry, &receiver, &ray, &hit, cosine)
+            };
             power_heuristic(pdf, drawn as f32)
         };
         radiance[queue.sample[i] as usize] += throughput(queue, i) * emission * f64::from(weight);

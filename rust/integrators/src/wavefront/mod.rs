@@ -3,14 +3,20 @@
 //!
 //! A stage reads columns and writes columns. No stage knows the next; [`worker`] lists them.
 
+mod bsdf_block;
+mod bsdf_stages;
 mod direct_light;
 mod emission;
+mod groups;
+mod guided;
 mod matte;
 mod queues;
+mod shading_frames;
 mod worker;
 
-use super::{Job, Session, Worker};
-use raywright_scene::{Scene, ShadingVariant};
+use super::{Guide, Job, Session, Worker};
+use raywright_scene::Footprint;
+use std::sync::Arc;
 use worker::WavefrontWorker;
 
 /// Path tracing by stages.
@@ -19,28 +25,54 @@ pub(super) struct Wavefront<'a> {
     max_depth: Option<u32>,
     roulette_depth: u32,
     shares: bool,
+    /// Where light comes from by way of what is sharp, if paths are guided and there is any.
+    guide: Option<Arc<Guide>>,
 }
 
 /// Radiances that f32 holds, with the squares of what follows from them.
 const RADIANCES: std::ops::Range<f64> = 1e-15..1e15;
 
 impl<'a> Wavefront<'a> {
-    /// Path tracing of a picture to a depth, with Russian roulette from a depth on. Paths of a group may share.
-    pub fn new(job: Job<'a>, max_depth: Option<u32>, roulette_depth: u32, shares: bool) -> Self {
-        Self { job, max_depth, roulette_depth, shares }
+    /// Path tracing of a picture to a depth, with Russian roulette from a depth on. Paths of a group may share, and be
+    /// guided.
+    pub fn new(
+        job: Job<'a>,
+        max_depth: Option<u32>,
+        roulette_depth: u32,
+        shares: bool,
+        guide: Option<Arc<Guide>>,
+    ) -> Self {
+        Self { job, max_depth, roulette_depth, shares, guide }
     }
 
-    /// Whether a scene has what stages know, and nothing else: triangles that reflect diffusely.
-    pub fn takes(scene: &Scene) -> bool {
-        let needs = scene.plan().needs();
-        scene.plan().suits(ShadingVariant::Plain)
-            && !(needs.shapes || needs.smooth || needs.motion)
+    /// Whether a picture is of a scene that has what stages know, and nothing else: opaque surfaces in
+    /// empty space, seen so wide
+    /// that f32 tells pixels apart.
+    pub fn takes(job: &Job<'_>) -> bool {
+        let scene = job.scene;
+        let (plan, needs) = (scene.plan(), scene.plan().needs());
+        tells_pixels_apart(job)
+            && !(needs.masks || needs.nested || needs.media || needs.waves)
+            && !plan.normals_as_given()
             && scene.lights().radiances().all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
     }
 }
 
+/// Whether pixels are so wide, at the distance of the scene, that directions in f32 miss none of them.
+fn tells_pixels_apart(job: &Job<'_>) -> bool {
+    /// Roundings of a direction within a pixel.
+    const ROUNDINGS: f64 = 64.0;
+    let middle = [job.camera.width(), job.camera.height()].map(|pixels| 0.5 * f64::from(pixels));
+    let origin = job.camera.ray(middle, [0.5; 2], 0.0).ray.origin;
+    let region = job.scene.region();
+    let distance = (origin - region.centre).length() + region.radius;
+    let Footprint { width, spread } = job.footprint;
+    width + spread * distance >= ROUNDINGS * f64::from(f32::EPSILON) * distance
+}
+
 impl Session for Wavefront<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(WavefrontWorker::new(&self.job, self.max_depth, self.roulette_depth, self.shares))
+        let depths = (self.max_depth, self.roulette_depth);
+        Box::new(WavefrontWorker::new(&self.job, depths, self.shares, self.guide.as_deref()))
     }
 }

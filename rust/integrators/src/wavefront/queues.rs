@@ -1,5 +1,6 @@
 //! Paths and shadow rays that wait for their next stage.
 
+use super::worker::Block;
 use raywright_base::math::{LANES, PathRays, SingleLanes, VectorLanes};
 use raywright_base::simd::{Column, Level, pack};
 
@@ -15,6 +16,44 @@ pub(super) struct PathQueue {
     pub normal: [Vec<f32>; 3],
     /// Whose sample it is.
     pub sample: Vec<u32>,
+    /// The ratio of radiance at its start to radiance here due to the index of refraction alone, and [`Flags`]; in
+    /// scenes that have more than matte surfaces.
+    pub scale: Vec<f32>,
+    pub flags: Vec<u32>,
+    /// How much denser its directions were drawn than surfaces scatter into them ([`super::guided`]); where paths are
+    /// guided.
+    pub aimed: Vec<f32>,
+    /// The bundle of neighbouring rays at the origin of its ray: how wide it is, and how much wider it gets by length;
+    /// where textures are filtered.
+    pub width: Vec<f32>,
+    pub spread: Vec<f32>,
+}
+
+/// Bits of what is known of a path.
+pub(super) struct Flags;
+
+impl Flags {
+    /// Each of few lights was asked where it was scattered last.
+    pub const ASKED_EACH: u32 = 1;
+    /// It has come to a surface that reflects more than arrives, in a channel.
+    pub const HAS_GAMUT_EXCESS: u32 = 2;
+}
+
+/// Which of the columns that few scenes need a queue has.
+#[derive(Clone, Copy)]
+pub(super) struct Extra {
+    /// Normals.
+    pub normal: bool,
+    /// Scales and flags.
+    pub state: bool,
+    /// How paths were aimed.
+    pub aimed: bool,
+    /// Widths and spreads.
+    pub width: bool,
+    /// Times.
+    pub time: bool,
+    /// All of the hits of rays, not their primitives alone.
+    pub hits: bool,
 }
 
 /// Shadow rays, and what they bring if nothing blocks them.
@@ -36,6 +75,12 @@ pub(super) struct PathLanes<'a> {
     pub pdf: &'a [f32; LANES],
     pub normal: &'a SingleLanes,
     pub sample: &'a [u32; LANES],
+    pub scale: &'a [f32; LANES],
+    pub flags: &'a [u32; LANES],
+    pub aimed: &'a [f32; LANES],
+    pub width: &'a [f32; LANES],
+    pub spread: &'a [f32; LANES],
+    pub time: &'a [f64; LANES],
 }
 
 /// Shadow rays, a lane each.
@@ -46,6 +91,7 @@ pub(super) struct ShadowLanes<'a> {
     pub misses: &'a [[u32; 2]; LANES],
     pub arriving: &'a SingleLanes,
     pub sample: &'a [u32; LANES],
+    pub time: &'a [f64; LANES],
 }
 
 fn three(room: usize) -> [Vec<f32>; 3] {
@@ -54,14 +100,20 @@ fn three(room: usize) -> [Vec<f32>; 3] {
 
 impl PathQueue {
     /// Room for so many paths.
-    pub fn with_room(most: usize, has_normals: bool) -> Self {
+    pub fn with_room(most: usize, extra: Extra) -> Self {
         let room = most + LANES;
+        let rays = PathRays::with_room(most, true);
         Self {
-            rays: PathRays::with_room(most, true),
+            rays: if extra.time { rays.with_times() } else { rays },
             throughput: three(room),
             pdf: vec![0.0; room],
-            normal: three(if has_normals { room } else { 0 }),
+            normal: three(if extra.normal { room } else { 0 }),
             sample: vec![0; room],
+            scale: vec![1.0; if extra.state { room } else { 0 }],
+            flags: vec![0; if extra.state { room } else { 0 }],
+            aimed: vec![1.0; if extra.aimed { room } else { 0 }],
+            width: vec![0.0; if extra.width { room } else { 0 }],
+            spread: vec![0.0; if extra.width { room } else { 0 }],
         }
     }
 
@@ -97,15 +149,32 @@ impl PathQueue {
             ];
             pack(level, mask, &columns);
         }
+        if !self.flags.is_empty() {
+            let columns =
+                [Column::new(paths.scale, &mut self.scale[at..]), Column::new(paths.flags, &mut self.flags[at..])];
+            pack(level, mask, &columns);
+        }
+        if !self.aimed.is_empty() {
+            pack(level, mask, &[Column::new(paths.aimed, &mut self.aimed[at..])]);
+        }
+        if !self.rays.time.is_empty() {
+            pack(level, mask, &[Column::new(paths.time, &mut self.rays.time[at..])]);
+        }
+        if !self.width.is_empty() {
+            let columns =
+                [Column::new(paths.width, &mut self.width[at..]), Column::new(paths.spread, &mut self.spread[at..])];
+            pack(level, mask, &columns);
+        }
         self.rays.len += mask.count_ones() as usize;
     }
 }
 
 impl ShadowQueue {
     /// Room for so many rays.
-    pub fn with_room(most: usize) -> Self {
-        let room = most + LANES;
-        Self { rays: PathRays::with_room(most, false), arriving: three(room), sample: vec![0; room] }
+    pub fn with_room(most: usize, extra: Extra) -> Self {
+        let (room, rays) = (most + LANES, PathRays::with_room(most, false));
+        let rays = if extra.time { rays.with_times() } else { rays };
+        Self { rays, arriving: three(room), sample: vec![0; room] }
     }
 
     /// Appends the rays of the lanes in a mask.
@@ -131,6 +200,32 @@ impl ShadowQueue {
             Column::new(shadows.sample, &mut self.sample[at..]),
         ];
         pack(level, mask, &columns);
+        if !self.rays.time.is_empty() {
+            pack(level, mask, &[Column::new(shadows.time, &mut self.rays.time[at..])]);
+        }
         self.rays.len += mask.count_ones() as usize;
+    }
+
+    /// Appends shadow rays from the lanes in a mask to the lights drawn there, and what they bring.
+    #[inline]
+    pub fn push_block(
+        &mut self,
+        level: Level,
+        mask: u32,
+        origin: &VectorLanes,
+        arriving: &SingleLanes,
+        block: &Block<'_>,
+    ) {
+        let misses = std::array::from_fn(|lane| [block.surfaces.primitive[lane], block.lights.primitive[lane]]);
+        let shadows = ShadowLanes {
+            origin,
+            direction: &block.lights.direction,
+            t_max: &block.lights.t_max,
+            misses: &misses,
+            arriving,
+            sample: &block.sample,
+            time: &block.time,
+        };
+        self.push(level, mask, &shadows);
     }
 }

@@ -1,83 +1,119 @@
 //! The stages of a path tracer, and the loop that takes a batch of paths through them.
 
-use super::matte::{self, Reflectances};
-use super::queues::{PathLanes, PathQueue, ShadowLanes, ShadowQueue};
-use super::{direct_light, emission};
-use crate::dimensions::Dimensions;
-use crate::path_sharing::{PathSharing, SharingPoint};
-use crate::{CameraSample, CameraSamples, Job, Worker, roulette};
-use raywright_base::math::{LANES, Ray, SingleLanes, Vec3, gather};
-use raywright_base::sampling::{SamplerColumns, SamplerLanes};
+use super::bsdf_block::{BsdfBlock, Scattered};
+use super::emission;
+use super::matte::Reflectances;
+use super::queues::{Extra, PathQueue, ShadowQueue};
+use crate::path_sharing::PathSharing;
+use crate::{CameraSample, CameraSamples, Guide, Job, Worker, roulette};
+use raywright_accel::Primitives;
+use raywright_base::math::{Hit, LANES, Ray, SingleLanes, gather};
+use raywright_base::sampling::SamplerColumns;
 use raywright_base::simd::Level;
 use raywright_base::timing::{Part, count, timed};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{LightBlock, Scene, SurfaceBlock};
+use raywright_scene::{Footprint, LightBlock, Plan, Scene, SurfaceBlock};
 use std::ops::Range;
 
 /// Paths that are taken together. 2,048 to 4,096 stay in the second cache, and fill every sixteen.
-const BATCH: usize = 4096;
+pub(super) const BATCH: usize = 4096;
 
 /// What one thread works with.
 pub(super) struct WavefrontWorker<'a> {
-    scene: &'a Scene,
-    level: Level,
-    max_depth: Option<u32>,
-    roulette_depth: u32,
+    pub(super) scene: &'a Scene,
+    pub(super) level: Level,
+    /// That of a camera's ray.
+    pub(super) footprint: Footprint,
+    pub(super) max_depth: Option<u32>,
+    pub(super) roulette_depth: u32,
     /// What paths of a group share, if they do.
-    sharing: Option<PathSharing>,
+    pub(super) sharing: Option<PathSharing>,
     /// What samples find for themselves, and then what they find for sharing.
-    found: Vec<Rgb>,
-    reflectances: Reflectances,
+    pub(super) found: Vec<Rgb>,
+    pub(super) reflectances: Reflectances,
     /// Paths about to follow their rays, and those that go on.
-    paths: [PathQueue; 2],
-    shadows: ShadowQueue,
-    samplers: Option<SamplerColumns>,
+    pub(super) paths: [PathQueue; 2],
+    pub(super) shadows: ShadowQueue,
+    pub(super) samplers: Option<SamplerColumns>,
     /// What each path hits first.
-    primitives: Vec<u32>,
-    is_occluded: Vec<bool>,
-    /// The paths that have met a surface, and those that have left the scene.
-    met: Vec<u32>,
-    outside: Vec<u32>,
-    block: Box<Block>,
+    pub(super) primitives: Vec<u32>,
+    /// All of these hits, in scenes with instances or motion.
+    pub(super) hits: Vec<Hit>,
+    pub(super) is_occluded: Vec<bool>,
+    /// The paths that have met a surface, by the kind of BSDF there, and those that have left the scene. Where all are
+    /// matte there is one kind.
+    pub(super) met: Vec<Vec<u32>>,
+    pub(super) outside: Vec<u32>,
+    /// The kind of each primitive's BSDF, where there are few.
+    pub(super) kinds: Vec<u8>,
+    pub(super) extra: Extra,
+    /// What is drawn of each of few lights.
+    pub(super) each: Vec<LightBlock>,
+    pub(super) block: Box<Block<'a>>,
 }
 
 /// Sixteen paths at a surface.
-struct Block {
-    surfaces: SurfaceBlock,
-    reflectance: SingleLanes,
-    throughput: SingleLanes,
-    sample: [u32; LANES],
-    lights: LightBlock,
+pub(super) struct Block<'a> {
+    pub(super) surfaces: SurfaceBlock,
+    pub(super) reflectance: SingleLanes,
+    pub(super) throughput: SingleLanes,
+    pub(super) sample: [u32; LANES],
+    pub(super) time: [f64; LANES],
+    pub(super) lights: LightBlock,
+    pub(super) bsdf: BsdfBlock<'a>,
+    pub(super) next: Scattered,
 }
 
 impl<'a> WavefrontWorker<'a> {
-    pub fn new(job: &Job<'a>, max_depth: Option<u32>, roulette_depth: u32, shares: bool) -> Self {
+    pub fn new(
+        job: &Job<'a>,
+        (max_depth, roulette_depth): (Option<u32>, u32),
+        shares: bool,
+        guide: Option<&'a Guide>,
+    ) -> Self {
         let (scene, level) = (job.scene, Level::current().unwrap_or(Level::Scalar));
-        let has_normals = scene.lights().ask_for_normals();
+        let needs = scene.plan().needs();
+        let are_flat = scene.plan().is_constant() && !needs.smooth && !needs.instances;
+        let scatters = needs.scattering || guide.is_some() || !are_flat;
+        let normal = scene.lights().ask_for_normals();
+        let hits = needs.instances || needs.motion;
+        let (aimed, width, time) = (guide.is_some(), needs.points.width, needs.motion);
+        let extra = Extra { normal, state: scatters, aimed, width, time, hits };
+        let kinds = if scatters { Plan::KINDS } else { 1 };
+        let count = scene.geometry().count();
+        let few = if scatters && count <= BATCH { count as u32 } else { 0 };
         let zero = SingleLanes::ZERO;
         let block = Block {
             surfaces: SurfaceBlock::NONE,
             reflectance: zero,
             throughput: zero,
             sample: [0; LANES],
+            time: [0.0; LANES],
             lights: LightBlock::NONE,
+            bsdf: BsdfBlock::new(are_flat, guide),
+            next: Scattered::NONE,
         };
         Self {
             scene,
             level,
+            footprint: job.footprint,
             max_depth,
             roulette_depth: roulette_depth.min(roulette::AT_LATEST),
             sharing: shares.then(|| PathSharing::new(level)),
             found: Vec::new(),
             reflectances: Reflectances::new(scene),
-            paths: [PathQueue::with_room(BATCH, has_normals), PathQueue::with_room(BATCH, has_normals)],
-            shadows: ShadowQueue::with_room(BATCH),
+            paths: [PathQueue::with_room(BATCH, extra), PathQueue::with_room(BATCH, extra)],
+            shadows: ShadowQueue::with_room(BATCH, extra),
             samplers: None,
             primitives: vec![0; BATCH + LANES],
+            hits: vec![Hit::MISS; if extra.hits { BATCH } else { 0 }],
             is_occluded: vec![false; BATCH + LANES],
-            met: Vec::with_capacity(BATCH),
+            met: vec![Vec::new(); kinds],
             outside: Vec::with_capacity(BATCH),
+            kinds: (0..few).map(|primitive| kind_of(scene, primitive) as u8).collect(),
+            extra,
+            each: Vec::new(),
             block: Box::new(block),
         }
     }
@@ -85,10 +121,10 @@ impl<'a> WavefrontWorker<'a> {
     /// Make room for so many paths.
     fn make_room(&mut self, most: usize) {
         if self.primitives.len() < most + LANES {
-            let has_normals = self.scene.lights().ask_for_normals();
-            self.paths = [PathQueue::with_room(most, has_normals), PathQueue::with_room(most, has_normals)];
-            self.shadows = ShadowQueue::with_room(most);
+            self.paths = [PathQueue::with_room(most, self.extra), PathQueue::with_room(most, self.extra)];
+            self.shadows = ShadowQueue::with_room(most, self.extra);
             self.primitives.resize(most + LANES, 0);
+            self.hits.resize(if self.extra.hits { most } else { 0 }, Hit::MISS);
             self.is_occluded.resize(most + LANES, false);
         }
     }
@@ -109,132 +145,111 @@ impl<'a> WavefrontWorker<'a> {
         }
         queue.throughput.iter_mut().for_each(|column| column[..count].fill(1.0));
         queue.pdf[..count].fill(f32::INFINITY);
+        if self.extra.state {
+            queue.scale[..count].fill(1.0);
+            queue.flags[..count].fill(0);
+        }
+        if self.extra.aimed {
+            queue.aimed[..count].fill(1.0);
+        }
+        if self.extra.time {
+            queue.rays.time[..count].copy_from_slice(&samples.time[some.clone()]);
+        }
+        if self.extra.width {
+            queue.width[..count].fill(self.footprint.width as f32);
+            queue.spread[..count].fill(self.footprint.spread as f32);
+        }
         queue.rays.misses[..count].fill([Ray::NO_TRIANGLE; 2]);
         if let Some(samplers) = &samples.samplers {
             self.samplers.get_or_insert_with(|| samplers.clone()).take_from(samplers, some);
         }
     }
 
-    /// Stage: paths are told apart by whether they meet anything.
+    /// Stage: what each path hits first is found.
+    fn find_closest(&mut self) {
+        let rays = &self.paths[0].rays;
+        if !self.extra.hits {
+            return self.scene.first_primitives(self.level, rays, &mut self.primitives);
+        }
+        self.scene.first_hits(rays, &mut self.hits);
+        for (primitive, hit) in self.primitives.iter_mut().zip(&self.hits[..rays.len]) {
+            *primitive = if hit.is_hit() { hit.primitive } else { Ray::NO_TRIANGLE };
+        }
+    }
+
+    /// Stage: paths are told apart by what they meet.
     fn classify(&mut self) {
         let count = self.paths[0].rays.len;
-        self.met.resize(count, 0);
+        let (first, rest) = self.met.split_at_mut(1);
+        first[0].resize(count, 0);
         self.outside.resize(count, 0);
         // Both are written, and one grows.
         let (mut met, mut outside) = (0, 0);
         for (i, &primitive) in (0u32..).zip(&self.primitives[..count]) {
-            (self.met[met], self.outside[outside]) = (i, i);
+            (first[0][met], self.outside[outside]) = (i, i);
             let is_met = usize::from(primitive != Ray::NO_TRIANGLE);
             (met, outside) = (met + is_met, outside + 1 - is_met);
         }
-        self.met.truncate(met);
+        first[0].truncate(met);
         self.outside.truncate(outside);
+        if !rest.is_empty() {
+            rest.iter_mut().for_each(Vec::clear);
+            let mut matte = 0;
+            for k in 0..met {
+                let i = first[0][k];
+                let primitive = self.primitives[i as usize];
+                let kind = match self.kinds.get(primitive as usize) {
+                    Some(&kind) => kind.into(),
+                    None => kind_of(self.scene, primitive),
+                };
+                first[0][matte] = i;
+                if kind == Plan::DIFFUSE {
+                    matte += 1;
+                } else {
+                    rest[kind - 1].push(i);
+                }
+            }
+            first[0].truncate(matte);
+        }
     }
 
     /// Stage: what is known of sixteen surfaces, and what they emit.
-    fn meet(&mut self, which: Range<usize>, radiance: &mut [Rgb]) {
+    fn meet(&mut self, which: &[u32], radiance: &mut [Rgb]) {
         let (queue, block) = (&self.paths[0], &mut *self.block);
         let geometry = self.scene.geometry();
-        geometry.meet_block(self.level, &queue.rays, &self.primitives, &self.met[which], &mut block.surfaces);
+        let met = (&self.primitives[..], &self.hits[..]);
+        geometry.meet_block(self.level, &queue.rays, met, which, &mut block.surfaces);
+        if self.extra.time {
+            gather(&queue.rays.time, &block.surfaces.index, &mut block.time);
+        }
         for (column, lanes) in queue.throughput.iter().zip(&mut block.throughput.0) {
             gather(column, &block.surfaces.index, lanes);
         }
         gather(&queue.sample, &block.surfaces.index, &mut block.sample);
-        emission::add_emitted(self.scene, queue, &block.surfaces, radiance);
-    }
-
-    /// Stage: sixteen paths come to the first or second point of a group that shares.
-    fn visit(&mut self, bounce: u32, samples: u32) {
-        let (Some(sharing), block) = (&mut self.sharing, &mut *self.block) else { return };
-        let rgb = |lanes: &SingleLanes, lane: usize| {
-            let v = lanes.get(lane);
-            Rgb::new(v.x.into(), v.y.into(), v.z.into())
-        };
-        for lane in 0..block.surfaces.count {
-            let reflectance = rgb(&block.reflectance, lane);
-            if reflectance.is_black() {
-                continue;
-            }
-            let (sample, throughput) = (block.sample[lane], rgb(&block.throughput, lane));
-            let normal = block.surfaces.normal.get(lane);
-            let point = SharingPoint {
-                position: block.surfaces.position.get(lane),
-                origin: block.surfaces.origin.get(lane),
-                shading: normal,
-                normal,
-                primitive: block.surfaces.primitive[lane],
-            };
-            if bounce == 0 {
-                sharing.add_first(sample, &point, throughput * reflectance);
-            } else if sharing.add_second(sample, &point, throughput) {
-                block.throughput.set(lane, Vec3::ONE);
-                block.sample[lane] = sample + samples;
+        if self.extra.state {
+            gather(&queue.scale, &block.surfaces.index, &mut block.bsdf.scale);
+            gather(&queue.flags, &block.surfaces.index, &mut block.bsdf.flags);
+        }
+        if self.extra.aimed {
+            gather(&queue.aimed, &block.surfaces.index, &mut block.bsdf.guided.aimed);
+        }
+        if self.extra.width {
+            let BsdfBlock { width, spread, .. } = &mut block.bsdf;
+            gather(&queue.width, &block.surfaces.index, width);
+            gather(&queue.spread, &block.surfaces.index, spread);
+            for lane in 0..LANES {
+                let origin = queue.rays.origin(block.surfaces.index[lane] as usize);
+                let distance = (block.surfaces.position.get(lane) - origin).length() as f32;
+                width[lane] = (width[lane] + spread[lane] * distance).abs();
             }
         }
+        emission::add_emitted(self.scene, (queue, &self.hits), &block.surfaces, &block.bsdf.width, radiance);
     }
 
-    /// Stage: light is drawn for sixteen surfaces, and its shadow rays are queued.
-    fn ask_for_light(&mut self, numbers: &SamplerLanes, bounce: u32) {
-        let block = &mut *self.block;
-        let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
-        let dimension = Dimensions::of(bounce, 0).light_choice(0);
-        let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
-        if lights.choices_are_even() {
-            let mut chance = [0.0; LANES];
-            numbers.chance_and_pair(self.level, dimension, &mut chance, &mut u);
-            choice = chance.map(f64::from);
-        } else {
-            numbers.choice_and_pair(self.level, dimension, &mut choice, &mut u);
-        }
-        lights.draw_block(self.level, geometry, &block.surfaces, &choice, &u, &mut block.lights);
-        let (mut arriving, mut is_lit) = (SingleLanes::ZERO, [0; LANES]);
-        direct_light::reflect(
-            self.level,
-            &block.surfaces,
-            &block.lights,
-            &block.reflectance,
-            &block.throughput,
-            &mut arriving,
-            &mut is_lit,
-        );
-        let misses = std::array::from_fn(|lane| [block.surfaces.primitive[lane], block.lights.primitive[lane]]);
-        let shadows = ShadowLanes {
-            origin: &block.surfaces.origin,
-            direction: &block.lights.direction,
-            t_max: &block.lights.t_max,
-            misses: &misses,
-            arriving: &arriving,
-            sample: &block.sample,
-        };
-        self.shadows.push(self.level, bits(&is_lit, block.surfaces.count), &shadows);
-    }
-
-    /// Stage: sixteen paths go on from matte surfaces, unless roulette ends them.
-    fn scatter(&mut self, numbers: &SamplerLanes, bounce: u32) {
-        let block = &mut *self.block;
-        let (mut chance, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
-        // A matte surface scatters in one way: what would choose among several plays roulette.
-        numbers.chance_and_pair(self.level, Dimensions::of(bounce, 0).scattering_choice(), &mut chance, &mut u);
-        let (mut direction, mut pdf) = (SingleLanes::ZERO, [0.0; LANES]);
-        let normal = &block.surfaces.normal;
-        matte::sample(self.level, normal, &u, &block.reflectance, &mut block.throughput, &mut direction, &mut pdf);
-        // The density with which a path comes to the second point that it shares must be known.
-        if bounce + 1 >= self.roulette_depth && (bounce > 0 || self.sharing.is_none()) {
-            matte::play(self.level, &chance, &mut block.throughput);
-        }
-        let mut goes_on = [0; LANES];
-        matte::survive(self.level, &block.throughput, &pdf, &mut goes_on);
-        let misses = std::array::from_fn(|lane| [block.surfaces.primitive[lane], Ray::NO_TRIANGLE]);
-        let paths = PathLanes {
-            origin: &block.surfaces.origin,
-            direction: &direction,
-            misses: &misses,
-            throughput: &block.throughput,
-            pdf: &pdf,
-            normal,
-            sample: &block.sample,
-        };
-        self.paths[1].push(self.level, bits(&goes_on, block.surfaces.count), &paths);
+    /// Whether roulette is played after so many bounces. The density with which a path comes to the second point that it
+    /// shares must be known.
+    pub(super) fn plays(&self, bounce: u32) -> bool {
+        bounce + 1 >= self.roulette_depth && (bounce > 0 || self.sharing.is_none())
     }
 
     /// Stage: shadow rays are followed, and what arrives along those that nothing blocks is added.
@@ -250,40 +265,46 @@ impl<'a> WavefrontWorker<'a> {
     }
 
     /// Follows the paths of these samples to their ends, and adds what they find.
-    fn follow(&mut self, samples: &CameraSamples, some: Range<usize>, cancel: &Cancel, radiance: &mut [Rgb]) {
+    pub(super) fn follow(
+        &mut self,
+        samples: &CameraSamples,
+        some: Range<usize>,
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
         let samples_here = some.len() as u32;
         self.start(samples, some);
         let Some(mut numbers) = self.samplers.as_ref().map(SamplerColumns::lanes) else { return };
-        let is_dark = self.scene.lights().is_dark();
         for bounce in 0.. {
             if self.paths[0].rays.len == 0 || cancel.is_raised() {
                 break;
             }
-            let rays = &self.paths[0].rays;
-            timed(Part::Closest, || self.scene.first_primitives(self.level, rays, &mut self.primitives));
+            timed(Part::Closest, || self.find_closest());
             self.classify();
             timed(Part::Arriving, || emission::add_outside(self.scene, &self.paths[0], &self.outside, radiance));
             self.paths[1].rays.len = 0;
             self.shadows.rays.len = 0;
-            count(self.met.len());
             let goes_on = self.max_depth.is_none_or(|depth| bounce < depth);
-            for start in (0..self.met.len()).step_by(LANES) {
-                timed(Part::Surface, || self.meet(start..self.met.len().min(start + LANES), radiance));
-                if !goes_on {
-                    continue;
+            for kind in 0..self.met.len() {
+                let met = std::mem::take(&mut self.met[kind]);
+                count(met.len());
+                for some in met.chunks(LANES) {
+                    timed(Part::Surface, || self.meet(some, radiance));
+                    if !goes_on {
+                        continue;
+                    }
+                    if let Some(columns) = &self.samplers {
+                        let own = self.block.sample.map(|sample| sample.min(sample.wrapping_sub(samples_here)));
+                        timed(Part::Numbers, || columns.gather(&own, &mut numbers));
+                    }
+                    if kind == Plan::DIFFUSE && !self.extra.aimed {
+                        self.leave_matte(&numbers, bounce, samples_here);
+                    } else {
+                        self.leave_any(&numbers, bounce, samples_here);
+                    }
                 }
-                timed(Part::Scattering, || self.reflectances.gather(&self.block.surfaces, &mut self.block.reflectance));
-                if let Some(columns) = &self.samplers {
-                    let own = self.block.sample.map(|sample| sample.min(sample.wrapping_sub(samples_here)));
-                    timed(Part::Numbers, || columns.gather(&own, &mut numbers));
-                }
-                if bounce < 2 && self.sharing.is_some() {
-                    self.visit(bounce, samples_here);
-                }
-                if !is_dark {
-                    timed(Part::Light, || self.ask_for_light(&numbers, bounce));
-                }
-                timed(Part::Continuation, || self.scatter(&numbers, bounce));
+                // Its memory is used again.
+                self.met[kind] = met;
             }
             timed(Part::Shadow, || self.follow_shadows(radiance));
             self.paths.swap(0, 1);
@@ -291,42 +312,18 @@ impl<'a> WavefrontWorker<'a> {
     }
 }
 
-impl WavefrontWorker<'_> {
-    /// Follows the paths of groups that share, as many groups at a time as make a batch.
-    fn follow_groups(&mut self, samples: &CameraSamples, groups: &[u32], cancel: &Cancel, radiance: &mut [Rgb]) {
-        let Some(mut sharing) = self.sharing.take() else { return };
-        let mut found = std::mem::take(&mut self.found);
-        let (mut groups, mut start) = (groups, 0);
-        while !groups.is_empty() && !cancel.is_raised() {
-            let (mut some, mut count) = (0, 0);
-            while some < groups.len() && (some == 0 || count + groups[some] as usize <= BATCH) {
-                count += groups[some] as usize;
-                some += 1;
-            }
-            let (these, rest) = groups.split_at(some);
-            let radiance = &mut radiance[start..start + count];
-            found.clear();
-            found.resize(2 * count, Rgb::ZERO);
-            sharing.begin(count);
-            self.sharing = Some(sharing);
-            self.follow(samples, start..start + count, cancel, &mut found);
-            sharing = self.sharing.take().unwrap_or_else(|| PathSharing::new(self.level));
-            let (own, shared) = found.split_at(count);
-            radiance.copy_from_slice(own);
-            let number = |sample: u32| {
-                let samplers = samples.samplers.as_ref();
-                samplers.map_or(0.0, |all| all.get(start + sample as usize).one(Dimensions::SHARING))
-            };
-            sharing.share(self.scene, these, shared, cancel, radiance, number);
-            (groups, start) = (rest, start + count);
-        }
-        (self.sharing, self.found) = (Some(sharing), found);
-    }
+/// The kind of the BSDF of a primitive. Matte is what reflects one colour everywhere by its own normal.
+fn kind_of(scene: &Scene, primitive: u32) -> usize {
+    let (plan, geometry) = (scene.plan(), scene.geometry());
+    let shape = geometry.locate(primitive).0;
+    let kind = plan.kind_of_shape(shape);
+    let is_matte = || plan.diffuse(shape).is_some() && !geometry.has_normal_at(primitive);
+    if kind == Plan::DIFFUSE && !is_matte() { Plan::MIXED } else { kind }
 }
 
 /// The lanes that have all bits, of the first so many, as bits.
 #[inline]
-fn bits(lanes: &[u32; LANES], count: usize) -> u32 {
+pub(super) fn bits(lanes: &[u32; LANES], count: usize) -> u32 {
     const BITS: [u32; LANES] = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768];
     let mut all = 0;
     for i in 0..LANES {

@@ -14,6 +14,7 @@ mod pose;
 mod prototype;
 mod rounding;
 mod shading;
+mod shape_block;
 mod solids;
 mod surface_block;
 mod vertices;
@@ -356,6 +357,11 @@ impl Geometry {
     /// Returns whether any mesh has shading normals.
     pub fn is_smooth(&self) -> bool {
         !self.normals.is_empty()
+    }
+
+    /// Returns whether a primitive has shading normals.
+    pub fn has_normal_at(&self, primitive: u32) -> bool {
+        self.is_smooth() && self.normals_of(primitive).is_some()
     }
 
     /// Returns whether a shape is a mesh with shading normals.

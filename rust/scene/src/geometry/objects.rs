@@ -3,7 +3,7 @@
 use super::instances::Instances;
 use super::prototype::Prototype;
 use raywright_accel::{Placed, UserGeometry, Wanted};
-use raywright_base::math::Ray;
+use raywright_base::math::{DVec3, Ray};
 use raywright_shapes::{Ball, Bounds, Candidate, Shape};
 use std::sync::Arc;
 
@@ -89,6 +89,10 @@ impl UserGeometry for Objects {
             Some(shape) => Some(shape.around()),
             None => self.bounds(primitive).map(|bounds| bounds.around()),
         }
+    }
+
+    fn ball(&self, primitive: u32) -> Option<(DVec3, f64)> {
+        self.get(primitive)?.ball()
     }
 
     fn is_nested(&self) -> bool {

@@ -1,14 +1,14 @@
-//! Where rays of paths meet triangles, sixteen at a time.
+//! Where rays of paths meet surfaces, sixteen at a time.
 
 use super::{Geometry, Vertices, unit_normal};
 use crate::RayOrigin;
 use raywright_accel::Primitives;
 use raywright_base::math::robust::greater as largest;
 use raywright_base::math::single::{greater, lesser, mask};
-use raywright_base::math::{DVec3, LANES, PathRays, SingleLanes, Vec3, VectorLanes, gather};
+use raywright_base::math::{DVec3, Hit, LANES, PathRays, SingleLanes, Vec3, VectorLanes, gather};
 use raywright_base::simd::{Level, loops};
 
-/// Points of triangles that rays have met, a lane each.
+/// Points of surfaces that rays have met, a lane each.
 #[derive(Clone, Debug)]
 pub struct SurfaceBlock {
     /// How many lanes count.
@@ -17,20 +17,22 @@ pub struct SurfaceBlock {
     pub index: [u32; LANES],
     /// Unit directions of the rays.
     pub direction: SingleLanes,
-    /// The points, to within a rounding of their triangles' planes.
+    /// The points, to within a rounding of their surfaces.
     pub position: VectorLanes,
     /// Where rays leave to the side that the ray came from.
     pub origin: VectorLanes,
-    /// Unit normals of the triangles, on the side that the ray came from.
+    /// Unit normals of the surfaces, on the side that the ray came from.
     pub normal: SingleLanes,
     /// Cosine of the angle between ray and normal.
     pub cosine: [f32; LANES],
-    /// Whether the ray came from the side of the winding's normal: all bits or none.
+    /// Whether the ray came from the side of the surface's own normal: all bits or none.
     pub is_front: [u32; LANES],
-    /// Which triangles.
+    /// Which primitives.
     pub primitive: [u32; LANES],
     /// Of which shapes.
     pub shape: [u32; LANES],
+    /// Weights of the second and third corners of triangles.
+    pub uv: [[f64; LANES]; 2],
 }
 
 /// Corners and normals of triangles, a lane each.
@@ -52,7 +54,15 @@ impl SurfaceBlock {
         is_front: [0; LANES],
         primitive: [0; LANES],
         shape: [0; LANES],
+        uv: [[0.0; LANES]; 2],
     };
+
+    /// Where rays leave to the other side.
+    #[inline(always)]
+    pub fn origin_behind(&self, lane: usize) -> DVec3 {
+        let position = self.position.get(lane);
+        position - (self.origin.get(lane) - position)
+    }
 }
 
 loops! {
@@ -87,6 +97,7 @@ loops! {
         normal: &mut SingleLanes,
         cosine: &mut [f32; LANES],
         is_front: &mut [u32; LANES],
+        uv: &mut [[f64; LANES]; 2],
     ) {
         for i in 0..LANES {
             let (a, b, c) = (triangles.corners[0].get(i), triangles.corners[1].get(i), triangles.corners[2].get(i));
@@ -121,18 +132,19 @@ loops! {
             normal.set(i, of_triangle.as_vec3() * side as f32);
             cosine[i] = slope.abs();
             is_front[i] = front;
+            (uv[0][i], uv[1][i]) = (v, w);
         }
     }
 }
 
 impl Geometry {
-    /// What rays meet, by the triangles that each hits first; `which` are their places in the queue, at most sixteen.
-    /// The last stands in the lanes that are left.
+    /// What rays meet, by the primitives that each hits first; `which` are their places in the queue, at most sixteen.
+    /// The last stands in the lanes that are left. In a scene with instances there are all hits.
     pub fn meet_block(
         &self,
         level: Level,
         rays: &PathRays,
-        primitives: &[u32],
+        (primitives, hits): (&[u32], &[Hit]),
         which: &[u32],
         surfaces: &mut SurfaceBlock,
     ) {
@@ -148,7 +160,8 @@ impl Geometry {
             gather(&rays.direction[axis], &surfaces.index, &mut surfaces.direction.0[axis]);
             gather(&rays.origin[axis], &surfaces.index, origin.axis_mut(axis));
         }
-        for lane in 0..LANES {
+        let others = self.lanes_of_shapes(&surfaces.primitive);
+        for lane in (0..LANES).filter(|lane| others >> lane & 1 == 0) {
             let primitive = surfaces.primitive[lane];
             let corners: [DVec3; 3] = match (self.facets.get(primitive), &self.vertices) {
                 (Some(facet), _) => {
@@ -168,15 +181,18 @@ impl Geometry {
                 to.set(lane, corner);
             }
         }
-        if !has_facets {
-            for lane in 0..LANES {
-                surfaces.shape[lane] = self.locate(surfaces.primitive[lane]).0;
-            }
+        for lane in (0..LANES).filter(|lane| !has_facets || others >> lane & 1 == 1) {
+            surfaces.shape[lane] = self.locate(surfaces.primitive[lane]).0;
         }
         if !has_facets {
             normals(level, &triangles.corners, &mut triangles.normal);
         }
-        let SurfaceBlock { direction, position, origin: leaves, normal, cosine, is_front, .. } = surfaces;
-        meet(level, &triangles, &origin, direction, position, leaves, normal, cosine, is_front);
+        let SurfaceBlock { direction, position, origin: leaves, normal, cosine, is_front, uv, .. } = surfaces;
+        if others != (1 << LANES) - 1 {
+            meet(level, &triangles, &origin, direction, position, leaves, normal, cosine, is_front, uv);
+        }
+        if others != 0 {
+            self.meet_shapes(level, (rays, hits), &origin, others, surfaces);
+        }
     }
 }

@@ -12,6 +12,7 @@ mod emitters;
 mod few_lights;
 mod infinite;
 mod instanced;
+mod lamp;
 mod light;
 mod light_block;
 mod light_lanes;
@@ -26,11 +27,13 @@ mod point;
 mod projector;
 mod pyramid;
 pub mod sky;
+mod sphere_block;
 mod spot;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod triangle_block;
 mod waved;
 
 pub use aim::Aim;
@@ -62,7 +65,7 @@ use choice::{Choice, Strength};
 use few_lights::Few;
 use infinite::InfiniteLights;
 use instanced::Copied;
-use light_block::TriangleLamp;
+use lamp::{Form, Lamp};
 use luminous::{Luminous, is_open};
 use plain::PlainLight;
 use raywright_accel::Primitives;
@@ -96,8 +99,9 @@ pub struct Lights {
     /// Precomputed data of each emissive primitive, if it is a triangle or sphere of uniform emission; empty if there
     /// are more than [`Lights::KEPT`].
     kept: Vec<Option<PlainLight>>,
-    /// The lights within the scene, if all are triangles of uniform emission.
-    lamps: Vec<TriangleLamp>,
+    /// The same prepared for f32, and whether all lights within the scene are triangles of uniform emission.
+    lamps: Vec<Option<Lamp>>,
+    are_triangles: bool,
 }
 
 impl Lights {
@@ -154,9 +158,26 @@ impl Lights {
         let kept = few_surfaces.iter().map(plain).collect();
         let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
         let lamps = Vec::new();
-        let mut all =
-            Self { emission, shines, open, first, surfaces, copied, inside, choice, infinite, few, kept, lamps };
-        all.lamps = all.triangle_lamps(geometry);
+        let are_triangles = false;
+        let mut all = Self {
+            emission,
+            shines,
+            open,
+            first,
+            surfaces,
+            copied,
+            inside,
+            choice,
+            infinite,
+            few,
+            kept,
+            lamps,
+            are_triangles,
+        };
+        all.lamps = all.lamps(geometry);
+        let is_triangle = |lamp: &Option<Lamp>| lamp.is_some_and(|lamp| matches!(lamp.form, Form::Triangle(_)));
+        let are_surfaces = all.copied.len() + all.inside.len() == 0;
+        all.are_triangles = are_surfaces && !all.lamps.is_empty() && all.lamps.iter().all(is_triangle);
         all
     }
 

@@ -15,11 +15,20 @@ use std::borrow::Cow;
 /// another the second ones, and so on.
 #[derive(Clone, Debug, Default)]
 pub struct BsdfLanes<'a> {
-    /// The BSDF of each lane, borrowed if it is constant over its surface.
-    each: Vec<Cow<'a, BsdfMix>>,
+    /// The BSDF of each lane, borrowed if it is constant over its surface, otherwise one of `own`. Both in one type would
+    /// move hundreds of bytes for each reference.
+    each: Vec<Held<'a>>,
+    own: Vec<BsdfMix>,
     /// Mixture components, as many as any lane has had.
     parts: Vec<WeightedLobe>,
     is_mixed: [bool; LANES],
+}
+
+/// Where the BSDF of a lane is.
+#[derive(Clone, Copy, Debug)]
+enum Held<'a> {
+    Elsewhere(&'a BsdfMix),
+    Here(usize),
 }
 
 /// One component of the mixtures, in every lane.
@@ -34,6 +43,13 @@ struct WeightedLobe {
 impl WeightedLobe {
     /// An empty component.
     const NONE: Self = Self { bsdf: AnyBsdfLanes::NONE, weight: RgbLanes::ZERO, probability: [0.0; LANES] };
+}
+
+/// Adds components. Apart from other functions, since one that builds a component touches its 140 kB of the stack.
+#[cold]
+#[inline(never)]
+fn make_room(parts: &mut Vec<WeightedLobe>, count: usize) {
+    parts.resize(count, WeightedLobe::NONE);
 }
 
 loops! {
@@ -87,18 +103,34 @@ impl<'a> BsdfLanes<'a> {
     /// Empties all lanes.
     pub fn clear(&mut self) {
         self.each.clear();
+        self.own.clear();
     }
 
     /// Fills the next lane.
     #[inline]
     pub fn push(&mut self, bsdf: Cow<'a, BsdfMix>) {
-        self.each.push(bsdf);
+        let held = match bsdf {
+            Cow::Borrowed(bsdf) => Held::Elsewhere(bsdf),
+            Cow::Owned(bsdf) => {
+                self.own.push(bsdf);
+                Held::Here(self.own.len() - 1)
+            }
+        };
+        self.each.push(held);
     }
 
     /// The BSDF of a lane.
     #[inline]
     pub fn get(&self, lane: usize) -> &BsdfMix {
-        &self.each[lane]
+        self.held(self.each[lane])
+    }
+
+    #[inline]
+    fn held<'b>(&'b self, held: Held<'b>) -> &'b BsdfMix {
+        match held {
+            Held::Elsewhere(bsdf) => bsdf,
+            Held::Here(number) => &self.own[number],
+        }
     }
 
     /// Copies the BSDF of the last lane, with an outgoing direction in its shading frame, into the arrays. Only
@@ -107,9 +139,13 @@ impl<'a> BsdfLanes<'a> {
     pub fn prepare(&mut self, wo: DVec3) {
         let lane = self.each.len() - 1;
         if self.parts.is_empty() {
-            self.parts.push(WeightedLobe::NONE);
+            make_room(&mut self.parts, 1);
         }
-        match &*self.each[lane] {
+        let bsdf = match self.each[lane] {
+            Held::Elsewhere(bsdf) => bsdf,
+            Held::Here(number) => &self.own[number],
+        };
+        match bsdf {
             BsdfMix::One(bsdf) => {
                 self.is_mixed[lane] = false;
                 self.parts[0].bsdf.set(lane, bsdf, wo);
@@ -117,7 +153,7 @@ impl<'a> BsdfLanes<'a> {
             BsdfMix::Several(parts) => {
                 self.is_mixed[lane] = true;
                 if self.parts.len() < parts.len() {
-                    self.parts.resize(parts.len(), WeightedLobe::NONE);
+                    make_room(&mut self.parts, parts.len());
                 }
                 self.parts.iter_mut().for_each(|part| part.probability[lane] = 0.0);
                 for (part, (weight, probability, bsdf)) in self.parts.iter_mut().zip(weighed(parts)) {
@@ -214,7 +250,7 @@ impl<'a> BsdfLanes<'a> {
 
     #[inline]
     fn get_if(&self, asks: bool, lane: usize) -> Option<&BsdfMix> {
-        if asks { self.each.get(lane).map(Cow::as_ref) } else { None }
+        if asks { self.each.get(lane).map(|&held| self.held(held)) } else { None }
     }
 
     fn evaluate_part(
@@ -226,7 +262,7 @@ impl<'a> BsdfLanes<'a> {
         value: &mut RgbLanes,
         pdf: &mut [f64; LANES],
     ) {
-        let each = |lane: usize| self.each.get(lane).and_then(|bsdf| part(bsdf, number));
+        let each = |lane: usize| self.each.get(lane).and_then(|&held| part(self.held(held), number));
         match self.parts.get(number) {
             Some(part) => part.bsdf.evaluate(level, each, asks, directions, value, pdf),
             None => (*value, *pdf) = (RgbLanes::ZERO, [0.0; LANES]),
@@ -242,7 +278,7 @@ impl<'a> BsdfLanes<'a> {
         numbers: (&[f64; LANES], &Pairs),
         drawn: &mut BsdfSampleLanes,
     ) {
-        let each = |lane: usize| self.each.get(lane).and_then(|bsdf| part(bsdf, number));
+        let each = |lane: usize| self.each.get(lane).and_then(|&held| part(self.held(held), number));
         match self.parts.get(number) {
             Some(part) => part.bsdf.sample(level, each, asks, wo, numbers, drawn),
             None => drawn.pdf = [0.0; LANES],

@@ -49,7 +49,7 @@ impl Resampled {
 
 /// The same for a lane each.
 #[derive(Clone, Debug)]
-pub(super) struct ResampledLanes {
+pub(crate) struct ResampledLanes {
     choice: [f64; LANES],
     sum: [f64; LANES],
     kept: [u64; LANES],
@@ -59,7 +59,7 @@ pub(super) struct ResampledLanes {
 
 loops! {
     /// Of one draw more, the same for all lanes.
-    pub(super) fn resample(all: &mut ResampledLanes, draw: u64, brings: &RgbLanes) {
+    pub(crate) fn resample(all: &mut ResampledLanes, draw: u64, brings: &RgbLanes) {
         for i in 0..LANES {
             all.set(i, all.get(i).add(draw, brings.get(i)));
         }

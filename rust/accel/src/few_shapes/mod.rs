@@ -1,11 +1,13 @@
-//! Brute-force intersection for scenes of few triangles, in SoA packets.
+//! Brute-force intersection for scenes of few triangles and spheres, in SoA packets.
 //!
-//! For up to a few dozen triangles, testing sixteen rays against every triangle is faster than traversing a tree. Two
-//! triangles that form a convex planar quadrilateral are tested as one. Each test is done in f32 with an error bound.
-//! Undecided cases are decided in f64 by the triangles themselves ([`EdgeRay`]), so hits are as exact as everywhere
-//! else.
+//! For up to a few dozen shapes, testing sixteen rays against every one is faster than traversing a tree. Two triangles
+//! that form a convex planar quadrilateral are tested as one. Each test is done in f32 with an error bound. Undecided
+//! cases are decided in f64 ([`EdgeRay`], [`Sphere::meet`]), so that at most a hit within a rounding of f64 differs.
 
 mod patch;
+mod sphere;
+#[cfg(test)]
+mod tests;
 
 use super::Primitives;
 use patch::{EdgeLine, Half, Outline, Patch, UNIT, outline};
@@ -13,17 +15,20 @@ use raywright_base::math::single::{choose, greater, lesser, mask};
 use raywright_base::math::{LANES, PathRays, Ray, Region};
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd, loops};
 use raywright_shapes::triangle::EdgeRay;
+use sphere::Sphere;
 
-/// A few triangles, prepared for packets of rays.
+/// A few triangles and spheres, prepared for packets of rays.
 #[derive(Clone, Debug)]
-pub struct FewTriangles {
+pub struct FewShapes {
+    /// The shapes by number: first the triangles, then the spheres.
     patches: Vec<Patch>,
-    /// The patch of each primitive.
-    patch_of: Vec<u32>,
+    spheres: Vec<Sphere>,
+    /// The number of the shape of each primitive.
+    shape_of: Vec<u32>,
     region: Region,
 }
 
-/// Sixteen rays, and for each the patches to ignore: that of its origin and that of its end.
+/// Sixteen rays, and for each the shapes that it leaves and that it ends on.
 struct Rays {
     origin: [[f32; LANES]; 3],
     direction: [[f32; LANES]; 3],
@@ -40,8 +45,8 @@ struct Best {
     /// Between `near` and `far` lies `t`.
     near: [f32; LANES],
     far: [f32; LANES],
-    patch: [u32; LANES],
-    /// Bit masks of the patches that were undecided.
+    shape: [u32; LANES],
+    /// Bit masks of the shapes that were undecided.
     open: [[u32; LANES]; 2],
 }
 
@@ -91,8 +96,6 @@ fn test<const FUSED: bool, const OUTLINE: usize, const FLAT: bool, const ANY: bo
     rays: &Rays,
     best: &mut Best,
 ) {
-    let bit = 1 << (index & 31);
-    let word = usize::from(index >= 32);
     let [x, y, z] = patch.axes;
     let edges = &patch.edges;
     let [ox, oy, oz] = [&rays.origin[x], &rays.origin[y], &rays.origin[z]];
@@ -137,28 +140,37 @@ fn test<const FUSED: bool, const OUTLINE: usize, const FLAT: bool, const ANY: bo
         };
         // How far the point lies off the patch, or the patch behind the ray.
         let off = greater(outside, -t);
-        let (near, far) = (t - error, t + error);
         // Only shadow rays end on a triangle.
         let is_known = mask(index == rays.misses[0][i]) | if ANY { mask(index == rays.misses[1][i]) } else { 0 };
-        let is_out = signs((error - off).to_bits() | (best.far[i] - near).to_bits()) | is_known;
-        let is_certain = signs((off + error).to_bits() & (far - best.near[i]).to_bits());
-        let is_hit = is_certain & !is_out;
-        best.open[word][i] |= bit & !(is_out | is_certain);
-        if ANY {
-            // Behind all patches from here on.
-            best.far[i] = choose(is_hit, f32::MIN, best.far[i]);
-            best.patch[i] &= !is_hit;
-        } else {
-            best.near[i] = choose(is_hit, near, best.near[i]);
-            best.far[i] = choose(is_hit, far, best.far[i]);
-            best.patch[i] = index & is_hit | best.patch[i] & !is_hit;
-        }
+        accept::<ANY>(index, i, (t, error, off), is_known, best);
     }
 }
 
-/// Tests all patches against sixteen rays.
+/// Keeps a hit of a lane at `t`, which errs by at most `error`, if it is nearer than the one before. It is a hit for
+/// certain if `off` is less than the error below zero, and none if it is more than the error above.
+#[inline(always)]
+fn accept<const ANY: bool>(index: u32, i: usize, (t, error, off): (f32, f32, f32), is_known: u32, best: &mut Best) {
+    let (bit, word) = (1 << (index & 31), usize::from(index >= 32));
+    let (near, far) = (t - error, t + error);
+    let is_out = signs((error - off).to_bits() | (best.far[i] - near).to_bits()) | is_known;
+    let is_certain = signs((off + error).to_bits() & (far - best.near[i]).to_bits());
+    let is_hit = is_certain & !is_out;
+    best.open[word][i] |= bit & !(is_out | is_certain);
+    if ANY {
+        // Behind all shapes from here on.
+        best.far[i] = choose(is_hit, f32::MIN, best.far[i]);
+        best.shape[i] &= !is_hit;
+    } else {
+        best.near[i] = choose(is_hit, near, best.near[i]);
+        best.far[i] = choose(is_hit, far, best.far[i]);
+        best.shape[i] = index & is_hit | best.shape[i] & !is_hit;
+    }
+}
+
+/// Tests all shapes against sixteen rays.
 struct TestAll<'a, const ANY: bool> {
     patches: &'a [Patch],
+    spheres: &'a [Sphere],
     rays: &'a Rays,
     best: &'a mut Best,
 }
@@ -178,6 +190,9 @@ impl<const N: usize, const ANY: bool> Kernel<N> for TestAll<'_, ANY> {
                 Outline::Parallelogram => either::<S, N, PARALLELOGRAM, ANY>(patch, index, rays, best),
                 Outline::Quadrilateral => either::<S, N, QUADRILATERAL, ANY>(patch, index, rays, best),
             }
+        }
+        for (index, sphere) in (self.patches.len() as u32..).zip(self.spheres) {
+            sphere.test::<ANY>(index, self.rays, self.best);
         }
     }
 }
@@ -200,7 +215,7 @@ fn either<S: Simd<N>, const N: usize, const OUTLINE: usize, const ANY: bool>(
 
 loops! {
     /// Load sixteen rays.
-    fn take(from: &PathRays, start: usize, extent: f32, patch_of: &[u32], rays: &mut Rays, best: &mut Best) {
+    fn take(from: &PathRays, start: usize, extent: f32, shape_of: &[u32], rays: &mut Rays, best: &mut Best) {
         let end = start + LANES;
         for axis in 0..3 {
             for (to, &from) in rays.origin[axis].iter_mut().zip(&from.origin[axis][start..end]) {
@@ -227,14 +242,14 @@ loops! {
                 *to = lesser(from as f32, *to);
             }
         }
-        let patch = |primitive: u32| patch_of.get(primitive as usize).copied().unwrap_or(NONE);
+        let shape = |primitive: u32| shape_of.get(primitive as usize).copied().unwrap_or(NONE);
         for (to, &[left, _]) in rays.misses[0].iter_mut().zip(&from.misses[start..end]) {
-            *to = patch(left);
+            *to = shape(left);
         }
-        // Only rays with a finite end have a target triangle.
+        // Only rays with a finite end have a target.
         if !from.t_max.is_empty() {
             for (to, &[_, reached]) in rays.misses[1].iter_mut().zip(&from.misses[start..end]) {
-                *to = patch(reached);
+                *to = shape(reached);
             }
         }
         for i in 0..LANES {
@@ -244,27 +259,33 @@ loops! {
             best.near[i] = end - room;
             best.far[i] = end + room;
         }
-        best.patch = [NONE; LANES];
+        best.shape = [NONE; LANES];
         best.open = [[0; LANES]; 2];
     }
 }
 
-impl FewTriangles {
-    /// Maximum number of triangles. Trees are faster for more.
+impl FewShapes {
+    /// Maximum number of primitives. Trees are faster for more.
     pub const MOST: usize = 64;
 
-    /// Prepare all primitives, if they are few triangles and their size suits f32.
+    /// Prepare all primitives, if they are few triangles and spheres and their size suits f32.
     pub fn new(primitives: &dyn Primitives) -> Option<Self> {
         /// Minimum and maximum size of a scene, for which squares neither overflow nor underflow.
         const SIZES: [f64; 2] = [1e-12, 1e12];
-        let count = primitives.count();
-        if count > Self::MOST || primitives.objects().is_some() {
+        let (count, objects) = (primitives.count(), primitives.objects());
+        if count > Self::MOST || objects.as_ref().is_some_and(|objects| objects.moves()) {
             return None;
         }
         let region = primitives.region();
-        let halves = (0..count as u32).filter(|&p| primitives.bounds(p).is_some());
-        let mut rest: Vec<_> = halves.map(|p| Half { primitive: p, corners: primitives.corners(p) }).collect();
-        let (mut patches, mut patch_of) = (Vec::new(), vec![NONE; count]);
+        let (mut rest, mut round, mut shape_of) = (Vec::new(), Vec::new(), vec![NONE; count]);
+        for primitive in 0..count as u32 {
+            if objects.as_ref().is_some_and(|objects| objects.bounds(primitive).is_some()) {
+                round.push((primitive, objects.as_ref()?.ball(primitive)?));
+            } else if primitives.bounds(primitive).is_some() {
+                rest.push(Half { primitive, corners: primitives.corners(primitive) });
+            }
+        }
+        let mut patches = Vec::new();
         rest.reverse();
         while let Some(first) = rest.pop() {
             let quadrilateral = |second: &Half| outline(&[first, *second], region.extent).is_some();
@@ -274,29 +295,39 @@ impl FewTriangles {
                 None => [Some(first), None],
             };
             for half in halves.iter().flatten() {
-                patch_of[half.primitive as usize] = patches.len() as u32;
+                shape_of[half.primitive as usize] = patches.len() as u32;
             }
             // Degenerate triangles cannot be hit.
             let Some(patch) = Patch::new(halves, region.extent) else { continue };
-            if !(SIZES[0]..SIZES[1]).contains(&region.extent) {
-                return None;
-            }
             patches.push(patch);
         }
-        Some(Self { patches, patch_of, region })
+        let is_empty = patches.is_empty() && round.is_empty();
+        if !is_empty && !(SIZES[0]..SIZES[1]).contains(&region.extent) {
+            return None;
+        }
+        let mut spheres = Vec::new();
+        for (primitive, (center, radius)) in round {
+            shape_of[primitive as usize] = (patches.len() + spheres.len()) as u32;
+            spheres.push(Sphere::new(primitive, center, radius));
+        }
+        Some(Self { patches, spheres, shape_of, region })
     }
 
-    /// Find the first triangle that each ray hits, or [`Ray::NO_TRIANGLE`].
+    /// Find the first primitive that each ray hits, or [`Ray::NO_TRIANGLE`].
     pub fn closest(&self, level: Level, rays: &PathRays, primitives: &mut [u32]) {
         self.ask::<false>(level, rays, |start, rays, best| {
             for (i, to) in primitives[start..][..LANES].iter_mut().enumerate() {
-                *to = self.patches.get(best.patch[i] as usize).map_or(NONE, |patch| {
-                    // On the diagonal, one triangle is as good as the other.
-                    let t = 0.5 * (best.near[i] + best.far[i]);
-                    let p = |axis: usize| t * rays.direction[axis][i] + rays.origin[axis][i];
-                    let is_second = beyond::<false>(patch.diagonal, [p(patch.axes[0]), p(patch.axes[1])]) > 0.0;
-                    patch.primitives[usize::from(is_second)]
-                });
+                let shape = best.shape[i] as usize;
+                *to = match self.patches.get(shape) {
+                    Some(patch) => {
+                        // On the diagonal, one triangle is as good as the other.
+                        let t = 0.5 * (best.near[i] + best.far[i]);
+                        let p = |axis: usize| t * rays.direction[axis][i] + rays.origin[axis][i];
+                        let is_second = beyond::<false>(patch.diagonal, [p(patch.axes[0]), p(patch.axes[1])]) > 0.0;
+                        patch.primitives[usize::from(is_second)]
+                    }
+                    None => self.spheres.get(shape.wrapping_sub(self.patches.len())).map_or(NONE, |s| s.primitive),
+                };
             }
         });
     }
@@ -305,12 +336,12 @@ impl FewTriangles {
     pub fn occluded(&self, level: Level, rays: &PathRays, occluded: &mut [bool]) {
         self.ask::<true>(level, rays, |start, _, best| {
             for (i, to) in occluded[start..][..LANES].iter_mut().enumerate() {
-                *to = best.patch[i] != NONE;
+                *to = best.shape[i] != NONE;
             }
         });
     }
 
-    /// Tests all patches against all rays.
+    /// Tests all shapes against all rays.
     fn ask<const ANY: bool>(&self, level: Level, from: &PathRays, mut answer: impl FnMut(usize, &Rays, &Best)) {
         let mut rays = Rays {
             origin: [[0.0; LANES]; 3],
@@ -321,10 +352,10 @@ impl FewTriangles {
             misses: [[NONE; LANES]; 2],
         };
         let zero = [0.0; LANES];
-        let mut best = Best { near: zero, far: zero, patch: [NONE; LANES], open: [[0; LANES]; 2] };
+        let mut best = Best { near: zero, far: zero, shape: [NONE; LANES], open: [[0; LANES]; 2] };
         for start in (0..from.len).step_by(LANES) {
-            take(level, from, start, self.region.extent as f32, &self.patch_of, &mut rays, &mut best);
-            let test = TestAll::<ANY> { patches: &self.patches, rays: &rays, best: &mut best };
+            take(level, from, start, self.region.extent as f32, &self.shape_of, &mut rays, &mut best);
+            let test = TestAll::<ANY> { patches: &self.patches, spheres: &self.spheres, rays: &rays, best: &mut best };
             if level.lanes() >= 8 {
                 Dispatch::<8>::dispatch(level, test);
             } else {
@@ -334,148 +365,39 @@ impl FewTriangles {
             let end = if some_open == 0 { 0 } else { LANES.min(from.len - start) };
             for i in 0..end {
                 let mut open = u64::from(best.open[1][i]) << 32 | u64::from(best.open[0][i]);
-                while open != 0 && !(ANY && best.patch[i] != NONE) {
-                    let patch = open.trailing_zeros() as usize;
+                while open != 0 && !(ANY && best.shape[i] != NONE) {
+                    let shape = open.trailing_zeros();
                     open &= open - 1;
-                    self.decide(&self.patches[patch], &from.get(start + i), i, &mut best);
+                    self.decide(shape, &from.get(start + i), i, &mut best);
                 }
             }
             answer(start, &rays, &best);
         }
     }
 
-    /// Decide in f64 whether a ray hits a patch before its closest hit so far.
+    /// Decide in f64 whether a ray hits a shape before its closest hit so far.
     #[cold]
     #[inline(never)]
-    fn decide(&self, patch: &Patch, ray: &Ray, lane: usize, best: &mut Best) {
-        let Some(edges) = EdgeRay::new(ray, &self.region) else { return };
-        let meet = |patch: &Patch| {
-            let met = patch.halves.iter().flatten().filter_map(|half| Some((edges.meet(half.corners)?, *half)));
-            met.min_by(|a, b| a.0.t.total_cmp(&b.0.t).then(a.1.primitive.cmp(&b.1.primitive)))
-        };
-        let Some((new, half)) = meet(patch) else { return };
-        if let Some((old, other)) = self.patches.get(best.patch[lane] as usize).and_then(meet)
-            && (old.t, other.primitive) <= (new.t, half.primitive)
-        {
+    fn decide(&self, shape: u32, ray: &Ray, lane: usize, best: &mut Best) {
+        let Some((t, primitive)) = self.meet(shape, ray) else { return };
+        if self.meet(best.shape[lane], ray).is_some_and(|before| before <= (t, primitive)) {
             return;
         }
-        let t = (new.t * edges.scale) as f32;
+        let t = t as f32;
         let room = 4.0 * UNIT * t;
         (best.near[lane], best.far[lane]) = (t - room, t + room);
-        best.patch[lane] = self.patch_of[half.primitive as usize];
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::BruteForce;
-    use crate::fans::{Soup, fans};
-    use raywright_base::math::{Hit, Vec3};
-    use raywright_base::sampling::philox4x32;
-
-    fn number(i: u32) -> f32 {
-        philox4x32([i, 0, 0, 0], [3, 9])[0] as f32 / (1u32 << 31) as f32 - 1.0
+        best.shape[lane] = shape;
     }
 
-    /// A room with a box in it, of parallelograms, and some triangles, on a grid so that rays hit corners and edges.
-    fn room(scale: f32) -> Vec<[Vec3; 3]> {
-        let mut all = Vec::new();
-        for (low, high) in [([-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]), ([-0.5, -1.0, -0.5], [0.25, 0.0, 0.25])] {
-            for axis in 0..3 {
-                for side in [low, high] {
-                    let corner = |u: bool, v: bool| {
-                        let mut p = low;
-                        p[axis] = side[axis];
-                        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-                        (p[a], p[b]) = (if u { high[a] } else { low[a] }, if v { high[b] } else { low[b] });
-                        Vec3::from_array(p) * scale
-                    };
-                    let [a, b, c, d] =
-                        [(false, false), (true, false), (true, true), (false, true)].map(|(u, v)| corner(u, v));
-                    all.extend([[a, b, c], [c, d, a]]);
-                }
-            }
+    /// Where a ray hits a shape first, and which primitive of it.
+    fn meet(&self, shape: u32, ray: &Ray) -> Option<(f64, u32)> {
+        if let Some(patch) = self.patches.get(shape as usize) {
+            let edges = EdgeRay::new(ray, &self.region)?;
+            let met = patch.halves.iter().flatten().filter_map(|half| Some((edges.meet(half.corners)?, *half)));
+            let (met, half) = met.min_by(|a, b| a.0.t.total_cmp(&b.0.t).then(a.1.primitive.cmp(&b.1.primitive)))?;
+            return Some((met.t * edges.scale, half.primitive));
         }
-        for i in 0..20 {
-            all.push([0, 1, 2].map(|k| Vec3::from_array([0, 1, 2].map(|x| scale * number(9 * i + 3 * k + x)))));
-        }
-        all
-    }
-
-    fn rays(scale: f32) -> PathRays {
-        let of_fans = fans().into_iter().flatten().map(|ray| (ray.origin.as_vec3(), ray.direction.as_vec3()));
-        // From grid points to grid points.
-        let grid = |i: u32| Vec3::from_array([0, 1, 2].map(|x| (4.0 * number(3 * i + x)).round() / 4.0));
-        let of_grid = (0..4000).map(|i| (grid(i), grid(i + 5000) - grid(i)));
-        let all: Vec<_> = of_fans.chain(of_grid).filter(|(_, d)| d.length() > 0.0).collect();
-        let mut rays = PathRays::with_room(all.len(), false);
-        rays.len = all.len();
-        for (i, (origin, direction)) in all.into_iter().enumerate() {
-            let (origin, direction) = (origin * scale, direction.normalize());
-            for axis in 0..3 {
-                rays.origin[axis][i] = origin[axis].into();
-                rays.direction[axis][i] = direction[axis];
-            }
-            rays.t_max[i] = if i % 3 == 0 { scale.into() } else { f64::INFINITY };
-        }
-        rays
-    }
-
-    #[test]
-    fn hits_are_those_of_brute_force() {
-        for (scale, is_single) in [(1.0, true), (1e-6, false), (3.7e5, true)] {
-            let soup = Soup { triangles: room(scale), is_single };
-            let rays = rays(scale);
-            let few = FewTriangles::new(&soup).expect("few triangles");
-            assert_eq!(few.patches.len(), 32, "parallelograms and triangles");
-            let exact: Vec<_> = (0..rays.len).map(|i| rays.get(i)).collect();
-            let mut wanted = vec![Hit::MISS; rays.len];
-            BruteForce::over(&soup, Level::current().unwrap()).intersect(&exact, &mut wanted);
-            let mut first = None;
-            for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
-                let mut hits = vec![0; rays.len + LANES];
-                few.closest(level, &rays, &mut hits);
-                let mut occluded = vec![false; rays.len + LANES];
-                few.occluded(level, &rays, &mut occluded);
-                for (i, wanted) in wanted.iter().enumerate() {
-                    assert_eq!(occluded[i], wanted.is_hit(), "{i} at {scale}: {:?} {wanted:?}", exact[i]);
-                    assert_eq!(hits[i] != NONE, wanted.is_hit(), "{i} at {scale}");
-                    if wanted.is_hit() {
-                        // On the diagonal of a quadrilateral either triangle is correct.
-                        let patch = |primitive: u32| few.patch_of[primitive as usize];
-                        assert_eq!(patch(hits[i]), patch(wanted.primitive), "{i} at {scale}: {:?}", exact[i]);
-                    }
-                }
-                let bits = hits[..rays.len].to_vec();
-                assert!(*first.get_or_insert(bits.clone()) == bits, "{level:?} at {scale}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_ray_misses_what_it_leaves_and_what_it_goes_to() {
-        let soup = Soup { triangles: room(1.0), is_single: true };
-        let few = FewTriangles::new(&soup).unwrap();
-        let (mut rays, mut hits) = (PathRays::with_room(1, false), [0; 1 + LANES]);
-        rays.len = 1;
-        // From the floor of the room straight up, past the box.
-        for (axis, (origin, direction)) in [(0.8, 0.0), (-1.0, 1.0), (0.8, 0.0)].into_iter().enumerate() {
-            (rays.origin[axis][0], rays.direction[axis][0]) = (origin, direction);
-        }
-        let level = Level::current().unwrap();
-        few.closest(level, &rays, &mut hits);
-        let floor = hits[0];
-        rays.misses[0][0] = floor;
-        few.closest(level, &rays, &mut hits);
-        let ceiling = hits[0];
-        assert_eq!(soup.corners(floor).map(|corner| corner.y), [-1.0; 3]);
-        assert_eq!(soup.corners(ceiling).map(|corner| corner.y), [1.0; 3]);
-        let mut occluded = [false; 1 + LANES];
-        few.occluded(level, &rays, &mut occluded);
-        assert!(occluded[0]);
-        rays.misses[0][1] = ceiling;
-        few.occluded(level, &rays, &mut occluded);
-        assert!(!occluded[0]);
+        let sphere = self.spheres.get((shape as usize).wrapping_sub(self.patches.len()))?;
+        sphere.meet(ray).map(|t| (t, sphere.primitive))
     }
 }

@@ -1,0 +1,273 @@
+//! Surfaces that scatter in any way, sixteen at a time. Their BSDFs are those of all other integrators, in f64.
+
+use super::guided::GuidedBlock;
+use super::queues::Flags;
+use super::shading_frames::ShadingFrames;
+use crate::Guide;
+use crate::transport::widened;
+use raywright_base::math::single::mask;
+use raywright_base::math::{DVec3, Hit, LANES, PathRays, SingleLanes, Vec3, VectorLanes, select};
+use raywright_base::sampling::Pairs;
+use raywright_base::simd::{Level, loops};
+use raywright_optics::{Bsdf, BsdfSample, BsdfSampleLanes, Null, Rgb, RgbLanes};
+use raywright_scene::materials::BsdfLanes;
+use raywright_scene::{Footprint, LightBlock, Scene, SurfaceBlock, SurfaceInteraction};
+use std::borrow::Cow;
+
+/// How sixteen surfaces scatter.
+pub(super) struct BsdfBlock<'a> {
+    bsdf: BsdfLanes<'a>,
+    drawn: BsdfSampleLanes,
+    frames: ShadingFrames,
+    /// Where light is asked for, and where each of few lights is.
+    pub asks: [bool; LANES],
+    pub asks_each: [bool; LANES],
+    /// Normals that light is drawn by: zero where a surface transmits.
+    pub normal: SingleLanes,
+    /// Of the paths, the ratio of radiance at their start to radiance here, and [`Flags`].
+    pub scale: [f32; LANES],
+    pub flags: [u32; LANES],
+    /// Widths of the bundles of neighbouring rays at the surfaces, 0 where none are known, and how much wider these get
+    /// by length.
+    pub width: [f32; LANES],
+    pub spread: [f32; LANES],
+    pub guided: GuidedBlock<'a>,
+}
+
+/// Where sixteen paths go on to.
+pub(super) struct Scattered {
+    pub origin: VectorLanes,
+    pub direction: SingleLanes,
+    pub throughput: SingleLanes,
+    pub pdf: [f32; LANES],
+    pub scale: [f32; LANES],
+    pub flags: [u32; LANES],
+    pub spread: [f32; LANES],
+}
+
+loops! {
+    /// What arrives of light that was drawn. The product is in f64: next to a mirror, f32 does not hold its factors.
+    fn weigh(
+        throughput: &SingleLanes,
+        lights: &LightBlock,
+        scattered: &RgbLanes,
+        pdf: &[f64; LANES],
+        counts: &[f64; LANES],
+        asks: &[bool; LANES],
+        arriving: &mut RgbLanes,
+    ) {
+        for i in 0..LANES {
+            let ratio = pdf[i] / f64::from(lights.pdf[i]);
+            let (t, light) = (throughput.get(i).as_dvec3(), lights.weight.get(i).as_dvec3());
+            let factor = counts[i] / (1.0 + ratio * ratio);
+            let all = scattered.get(i) * Rgb::from_array((t * light * factor).to_array());
+            arriving.set(i, Rgb::select(asks[i] & (lights.pdf[i] > 0.0), all, Rgb::ZERO));
+        }
+    }
+}
+
+loops! {
+    /// From what was drawn to the paths that go on; those whose directions do not count end.
+    fn leave(
+        surfaces: &SurfaceBlock,
+        throughput: &SingleLanes,
+        drawn: &BsdfSampleLanes,
+        counts: &[f64; LANES],
+        next: &mut Scattered,
+    ) {
+        for i in 0..LANES {
+            next.throughput.set(i, throughput.get(i) * (drawn.weight.get(i) * counts[i]).as_vec3());
+            next.pdf[i] = if counts[i] > 0.0 { drawn.pdf[i] as f32 } else { 0.0 };
+            next.scale[i] *= (drawn.eta[i] * drawn.eta[i]) as f32;
+            let (front, behind) = (surfaces.origin.get(i), surfaces.origin_behind(i));
+            next.origin.set(i, select(drawn.is_through[i], behind, front));
+        }
+    }
+}
+
+impl Scattered {
+    /// Of no paths.
+    pub const NONE: Self = Self {
+        origin: VectorLanes::ZERO,
+        direction: SingleLanes::ZERO,
+        throughput: SingleLanes::ZERO,
+        pdf: [0.0; LANES],
+        scale: [1.0; LANES],
+        flags: [0; LANES],
+        spread: [0.0; LANES],
+    };
+}
+
+impl<'a> BsdfBlock<'a> {
+    pub fn new(are_flat: bool, guide: Option<&'a Guide>) -> Self {
+        Self {
+            bsdf: BsdfLanes::default(),
+            drawn: BsdfSampleLanes::NONE,
+            frames: ShadingFrames::new(are_flat),
+            asks: [false; LANES],
+            asks_each: [false; LANES],
+            normal: SingleLanes::ZERO,
+            scale: [1.0; LANES],
+            flags: [0; LANES],
+            width: [0.0; LANES],
+            spread: [0.0; LANES],
+            guided: GuidedBlock::new(guide),
+        }
+    }
+
+    /// Stage: materials are asked how surfaces scatter, where a ray is so wide. `chance` is for the roulette of paths
+    /// that were aimed.
+    pub fn evaluate_materials(
+        &mut self,
+        level: Level,
+        scene: &'a Scene,
+        met: (&PathRays, &[Hit]),
+        surfaces: &SurfaceBlock,
+        chance: &[f64; LANES],
+        throughput: &mut SingleLanes,
+    ) {
+        self.guided.clear();
+        self.frames.meet(level, scene.geometry(), met, surfaces);
+        self.bsdf.clear();
+        (self.asks, self.asks_each) = ([false; LANES], [false; LANES]);
+        for lane in 0..surfaces.count {
+            let (plan, width) = (scene.plan(), f64::from(self.width[lane]));
+            let bsdf = match plan.constant(surfaces.shape[lane], surfaces.is_front[lane] != 0) {
+                Some(bsdf) if width == 0.0 => Cow::Borrowed(bsdf),
+                _ => {
+                    let made = self.frames.replace(lane, |ray, hit, surface| {
+                        SurfaceInteraction::new(scene, ray, hit, surface, width, 1.0)
+                    });
+                    Cow::Owned(made.unwrap_or_else(|| Null.into()))
+                }
+            };
+            self.bsdf.push(bsdf);
+            self.bsdf.prepare(self.frames.wo.get(lane));
+            let bsdf = self.bsdf.get(lane);
+            self.asks[lane] = !bsdf.is_delta();
+            self.asks_each[lane] = plan.asks_each(|| bsdf.roughness());
+            let normal = if bsdf.transmits() { DVec3::ZERO } else { self.frames.normal(surfaces, lane).0 };
+            self.normal.set(lane, normal.as_vec3());
+            let again = bsdf.repeat_correction();
+            if again != Rgb::ONE {
+                if self.flags[lane] & Flags::HAS_GAMUT_EXCESS != 0 {
+                    throughput.set(lane, throughput.get(lane) * again.as_vec3());
+                }
+                self.flags[lane] |= Flags::HAS_GAMUT_EXCESS;
+            }
+            let at = (surfaces.position.get(lane), bsdf);
+            self.guided.arrive(lane, at, (self.scale[lane], chance[lane]), throughput);
+            self.asks[lane] &= !self.guided.ends[lane];
+        }
+    }
+
+    /// The reflectance of the surface of a lane if that is matte, its shading normal, and whether that was bent towards
+    /// the ray.
+    pub fn matte(&self, surfaces: &SurfaceBlock, lane: usize) -> Option<(Rgb, Vec3, bool)> {
+        let (normal, is_bent) = self.frames.normal(surfaces, lane);
+        // A surface that one normal shows from above and the other from below scatters nothing.
+        let is_seen = normal.dot(surfaces.direction.get(lane).as_dvec3()) < 0.0;
+        let reflectance = self.bsdf.get(lane).diffuse().filter(|_| is_seen)?;
+        Some((reflectance, normal.as_vec3(), is_bent))
+    }
+
+    /// What arrives of light that was drawn, in some lanes, if nothing blocks it.
+    pub fn reflect(
+        &self,
+        level: Level,
+        surfaces: &SurfaceBlock,
+        lights: &LightBlock,
+        throughput: &SingleLanes,
+        asks: &[bool; LANES],
+        arriving: &mut RgbLanes,
+    ) {
+        let (mut wi, mut scattered) = (VectorLanes::ZERO, RgbLanes::ZERO);
+        let (mut pdf, mut counts) = ([0.0; LANES], [0.0; LANES]);
+        self.frames.look(level, surfaces, &lights.direction, &mut wi, &mut counts);
+        let asks = std::array::from_fn(|lane| asks[lane] && lights.pdf[lane] > 0.0 && counts[lane] > 0.0);
+        self.bsdf.evaluate(level, &asks, &self.frames.wo, &wi, &mut scattered, &mut pdf);
+        if self.guided.is_here() {
+            for lane in (0..LANES).filter(|&lane| asks[lane]) {
+                let direction = lights.direction.get(lane).as_dvec3();
+                pdf[lane] = self.guided.density(level, lane, pdf[lane], direction);
+            }
+        }
+        weigh(level, throughput, lights, &scattered, &pdf, &counts, &asks, arriving);
+    }
+
+    /// Stage: paths are scattered.
+    pub fn sample(
+        &mut self,
+        level: Level,
+        surfaces: &SurfaceBlock,
+        throughput: &SingleLanes,
+        (choice, u): (&mut [f64; LANES], &Pairs),
+        next: &mut Scattered,
+    ) {
+        let goes = std::array::from_fn(|lane| lane < surfaces.count && !self.guided.ends[lane]);
+        if self.guided.is_here() {
+            self.sample_guided(level, surfaces, &goes, (choice, u));
+        } else {
+            self.bsdf.sample(level, &goes, &self.frames.wo, (choice, u), &mut self.drawn);
+        }
+        (next.scale, next.flags) = (self.scale, self.flags);
+        let (drawn, mut counts) = (&self.drawn, [0.0; LANES]);
+        self.frames.leave(level, surfaces, (&drawn.wi, &drawn.pdf), &mut next.direction, &mut counts);
+        leave(level, surfaces, throughput, drawn, &counts, next);
+        if self.width.iter().any(|&width| width > 0.0) {
+            for lane in 0..surfaces.count {
+                let Some(drawn) = drawn.get(lane) else { continue };
+                let before = Footprint { width: self.width[lane].into(), spread: self.spread[lane].into() };
+                let after = widened(&before, before.width, self.frames.curvature(lane), &drawn);
+                next.spread[lane] = after.spread as f32;
+            }
+        }
+        for (flags, &each) in next.flags.iter_mut().zip(&self.asks_each) {
+            *flags = *flags & !Flags::ASKED_EACH | Flags::ASKED_EACH & mask(each);
+        }
+    }
+
+    /// The same where surfaces have guides: some paths aim, the others are scattered.
+    fn sample_guided(
+        &mut self,
+        level: Level,
+        surfaces: &SurfaceBlock,
+        goes: &[bool; LANES],
+        (choice, u): (&mut [f64; LANES], &Pairs),
+    ) {
+        let aims = self.guided.aims(goes, choice);
+        let scatters = std::array::from_fn(|lane| goes[lane] && !aims[lane]);
+        self.bsdf.sample(level, &scatters, &self.frames.wo, (choice, u), &mut self.drawn);
+        for lane in (0..LANES).filter(|&lane| scatters[lane]) {
+            if self.drawn.pdf[lane] <= 0.0 {
+                continue;
+            }
+            let direction = self.frames.to_world(surfaces, lane, self.drawn.wi.get(lane));
+            self.guided.mix(level, lane, direction, &mut self.drawn);
+        }
+        if !aims.contains(&true) {
+            return;
+        }
+        let (mut towards, mut wi, mut counts) = (VectorLanes::ZERO, VectorLanes::ZERO, [0.0; LANES]);
+        for lane in (0..LANES).filter(|&lane| aims[lane]) {
+            if let Some(direction) = self.guided.sample(lane, choice[lane], [u[0][lane], u[1][lane]]) {
+                towards.set(lane, direction);
+                let (local, count) = self.frames.to_local(surfaces, lane, direction);
+                wi.set(lane, local);
+                counts[lane] = count;
+            }
+        }
+        let (mut value, mut pdf) = (RgbLanes::ZERO, [0.0; LANES]);
+        self.bsdf.evaluate(level, &aims, &self.frames.wo, &wi, &mut value, &mut pdf);
+        for lane in (0..LANES).filter(|&lane| aims[lane]) {
+            let scattered = value.get(lane);
+            if scattered.is_black() || pdf[lane] <= 0.0 || counts[lane] <= 0.0 {
+                self.drawn.set(lane, None);
+                continue;
+            }
+            let both = self.guided.density(level, lane, pdf[lane], towards.get(lane));
+            self.drawn.set(lane, Some(BsdfSample::new(wi.get(lane), scattered / both, both)));
+            self.guided.aim(lane, both / pdf[lane]);
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The stages that take sixteen paths from surfaces of any kind to their next rays.
+
+use super::matte;
+use super::queues::PathLanes;
+use super::worker::{WavefrontWorker, bits};
+use crate::dimensions::Dimensions;
+use crate::resampling::{ResampledLanes, resample};
+use raywright_base::math::{LANES, Ray, SingleLanes, VectorLanes};
+use raywright_base::sampling::SamplerLanes;
+use raywright_base::timing::{Part, timed};
+use raywright_optics::RgbLanes;
+use raywright_scene::LightBlock;
+
+impl WavefrontWorker<'_> {
+    /// Takes sixteen paths from surfaces of any kind to their next rays.
+    pub(super) fn leave_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32) {
+        timed(Part::Scattering, || self.evaluate_materials(numbers, bounce));
+        if bounce < 2 && self.sharing.is_some() {
+            for lane in 0..self.block.surfaces.count {
+                if let Some((reflectance, normal, is_bent)) = self.block.bsdf.matte(&self.block.surfaces, lane) {
+                    self.visit_lane(lane, (reflectance.as_vec3(), normal, is_bent), bounce, samples);
+                }
+            }
+        }
+        if !self.scene.lights().is_dark() && self.block.bsdf.asks.contains(&true) {
+            timed(Part::Light, || self.ask_for_light_of_any(numbers, bounce));
+        }
+        timed(Part::Continuation, || self.scatter_from_any(numbers, bounce));
+    }
+
+    /// Stage: materials are asked how sixteen surfaces scatter.
+    fn evaluate_materials(&mut self, numbers: &SamplerLanes, bounce: u32) {
+        let block = &mut *self.block;
+        let mut chance = [0.0; LANES];
+        if self.extra.aimed && block.bsdf.guided.aimed.iter().any(|&aimed| aimed > 1.0) {
+            numbers.one(self.level, &[Dimensions::of(bounce, 0).roulette(); LANES], &mut chance);
+        }
+        let met = (&self.paths[0].rays, &self.hits[..]);
+        let throughput = &mut block.throughput;
+        block.bsdf.evaluate_materials(self.level, self.scene, met, &block.surfaces, &chance, throughput);
+        // The density with which a path comes to the second point that it shares must be known.
+        if bounce == 0 && self.sharing.is_some() {
+            block.bsdf.guided.do_not_aim();
+        }
+    }
+
+    /// Stage: light is drawn for sixteen surfaces of any kind, and its shadow rays are queued: of one light, or where
+    /// surfaces are glossy and lights few, of each, and of these draws one stands for all.
+    fn ask_for_light_of_any(&mut self, numbers: &SamplerLanes, bounce: u32) {
+        let (level, block) = (self.level, &mut *self.block);
+        let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
+        let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
+        let dimensions = Dimensions::of(bounce, 0);
+        numbers.choice_and_pair(level, dimensions.light_choice(0), &mut choice, &mut u);
+        let asks = block.bsdf.asks;
+        let asks_each: [bool; LANES] = std::array::from_fn(|lane| asks[lane] && block.bsdf.asks_each[lane]);
+        let asks_one: [bool; LANES] = std::array::from_fn(|lane| asks[lane] && !asks_each[lane]);
+        let (surfaces, normal) = (&block.surfaces, &block.bsdf.normal);
+        let mut arriving = RgbLanes::ZERO;
+        if asks_one.contains(&true) {
+            lights.draw_block(level, geometry, surfaces, normal, &choice, &u, &mut block.lights);
+            block.bsdf.reflect(level, surfaces, &block.lights, &block.throughput, &asks_one, &mut arriving);
+        }
+        if asks_each.contains(&true) {
+            let mut all = ResampledLanes::new(choice);
+            self.each.resize(lights.few() as usize, LightBlock::NONE);
+            for (one, drawn) in (0u32..).zip(&mut self.each) {
+                let mut of_one = RgbLanes::ZERO;
+                numbers.choice_and_pair(level, dimensions.light_choice(one), &mut choice, &mut u);
+                lights.draw_one_block(one, level, geometry, (surfaces, normal), &choice, &u, drawn);
+                block.bsdf.reflect(level, surfaces, drawn, &block.throughput, &asks_each, &mut of_one);
+                resample(level, &mut all, one.into(), &of_one);
+            }
+            for lane in 0..surfaces.count {
+                if let Some((one, brings)) = all.kept(lane) {
+                    block.lights.copy(lane, &self.each[one]);
+                    arriving.set(lane, brings);
+                }
+            }
+        }
+        let (mut origin, mut brings, mut lit) = (VectorLanes::ZERO, SingleLanes::ZERO, 0u32);
+        for lane in 0..surfaces.count {
+            let towards = block.lights.direction.get(lane).dot(surfaces.normal.get(lane));
+            let side = if towards < 0.0 { surfaces.origin_behind(lane) } else { surfaces.origin.get(lane) };
+            origin.set(lane, side);
+            brings.set(lane, arriving.get(lane).as_vec3());
+            lit |= u32::from(!arriving.get(lane).is_black()) << lane;
+        }
+        self.shadows.push_block(level, lit, &origin, &brings, &self.block);
+    }
+
+    /// Stage: sixteen paths go on from surfaces of any kind, unless roulette ends them.
+    fn scatter_from_any(&mut self, numbers: &SamplerLanes, bounce: u32) {
+        let plays = self.plays(bounce);
+        let (level, block) = (self.level, &mut *self.block);
+        let (mut choice, mut single) = ([0.0; LANES], [[0.0; LANES]; 2]);
+        let dimensions = Dimensions::of(bounce, 0);
+        numbers.choice_and_pair(level, dimensions.scattering_choice(), &mut choice, &mut single);
+        let u = single.map(|u| u.map(f64::from));
+        let next = &mut block.next;
+        block.bsdf.sample(level, &block.surfaces, &block.throughput, (&mut choice, &u), next);
+        let guided = &block.bsdf.guided;
+        if plays {
+            let mut chance = [0.0; LANES];
+            numbers.one(level, &[dimensions.roulette(); LANES], &mut chance);
+            let before = next.throughput;
+            // No light is lost where it is small only because of the index of refraction, or because paths were aimed.
+            let scale = std::array::from_fn(|lane| next.scale[lane] * guided.aimed[lane]);
+            matte::play(level, &chance.map(|chance| chance as f32), &scale, &mut next.throughput);
+            for lane in (0..LANES).filter(|&lane| guided.has_played[lane]) {
+                next.throughput.set(lane, before.get(lane));
+            }
+        }
+        let mut goes_on = [0; LANES];
+        matte::survive(level, &next.throughput, &next.pdf, &mut goes_on);
+        let misses = std::array::from_fn(|lane| [block.surfaces.primitive[lane], Ray::NO_TRIANGLE]);
+        let paths = PathLanes {
+            origin: &next.origin,
+            direction: &next.direction,
+            misses: &misses,
+            throughput: &next.throughput,
+            pdf: &next.pdf,
+            normal: &block.bsdf.normal,
+            sample: &block.sample,
+            scale: &next.scale,
+            flags: &next.flags,
+            aimed: &guided.aimed,
+            width: &block.bsdf.width,
+            spread: &next.spread,
+            time: &block.time,
+        };
+        self.paths[1].push(level, bits(&goes_on, block.surfaces.count), &paths);
+    }
+}
