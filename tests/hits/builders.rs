@@ -1,7 +1,7 @@
 //! Builders and optimizers: every tree is valid and gives the hits of brute force, bit for bit.
 
 use super::triangles::{Random, Triangles, bits, levels};
-use raywright::accel::bvh::build::halves::Way;
+use raywright::accel::bvh::build::halves::SplitRule;
 use raywright::accel::bvh::build::morton::Bits;
 use raywright::accel::bvh::build::{Builder, ploc};
 use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
@@ -20,9 +20,9 @@ pub const BUILDERS: [Builder; 9] = [
     Builder::Morton(Bits::Thirty),
     Builder::Morton(Bits::SixtyThree),
     Builder::Ploc { radius: ploc::RADIUS },
-    Builder::Halves(Way::Midpoint),
-    Builder::Halves(Way::Median),
-    Builder::Halves(Way::Mean),
+    Builder::Halves(SplitRule::Midpoint),
+    Builder::Halves(SplitRule::Median),
+    Builder::Halves(SplitRule::Mean),
 ];
 
 /// No optimizer, one, and all.

@@ -2,7 +2,7 @@
 
 use super::triangles::{Random, Triangles, levels};
 use raywright::accel::bvh::build::{Builder, halves, morton, ploc};
-use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
+use raywright::accel::bvh::traverse::{Orders, PacketSize, Traversal};
 use raywright::accel::bvh::{Options, Quality};
 use raywright::accel::walk::{Built, Input, Mailbox};
 use raywright::accel::{Accelerator, Primitives, bsp, grid, kdtree, octree, trees, walked};
@@ -62,8 +62,8 @@ fn all() -> Vec<(&'static str, Over)> {
         ("sweep", of(Builder::Sweep, Quality::Balanced)),
         ("morton", of(Builder::Morton(morton::Bits::default()), Quality::Balanced)),
         ("ploc", of(Builder::Ploc { radius: ploc::RADIUS }, Quality::Balanced)),
-        ("medians", of(Builder::Halves(halves::Way::Median), Quality::Balanced)),
-        ("stack", binary(Traversal::Stack(Rays::One))),
+        ("medians", of(Builder::Halves(halves::SplitRule::Median), Quality::Balanced)),
+        ("stack", binary(Traversal::Stack(PacketSize::One))),
         ("slabs", binary(Traversal::Slabs)),
         ("threads", binary(Traversal::Threaded(Orders::Eight))),
         ("kD-tree", walk(|input| kdtree::build(input, &kdtree::Options::DEFAULT))),

@@ -4,15 +4,15 @@ use super::builders::{BUILDERS, SPATIAL, optimisers, sticks};
 use super::triangles::{Random, Triangles, levels};
 use raywright::accel::bvh::Options;
 use raywright::accel::bvh::optimise::Optimisers;
-use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
+use raywright::accel::bvh::traverse::{Orders, PacketSize, Traversal};
 use raywright::accel::{Accelerator, BruteForce, Cost, Crossings, Primitives, Side, UserGeometry, Wanted, trees};
 use raywright::math::{DVec3, Hit, Ray, Vec3};
 use raywright::shapes::{Bounds, Candidate, Contact};
 use raywright::simd::Level;
 use std::sync::Arc;
 
-const BUNDLES: Traversal = Traversal::Stack(Rays::SixtyFour);
-const STACK: Traversal = Traversal::Stack(Rays::One);
+const BUNDLES: Traversal = Traversal::Stack(PacketSize::SixtyFour);
+const STACK: Traversal = Traversal::Stack(PacketSize::One);
 
 fn best() -> Level {
     levels().last().unwrap()

@@ -1,6 +1,6 @@
 //! Triangles and rays for the tests of hits, and the comparison of every accelerator at every level.
 
-use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
+use raywright::accel::bvh::traverse::{Orders, PacketSize, Traversal};
 use raywright::accel::bvh::{self, Options};
 use raywright::accel::grid::{self, Resolution};
 use raywright::accel::kdtree::{self, Builder};
@@ -73,9 +73,9 @@ type Build = fn(&Input) -> Built;
 
 /// Structures with single-ray or packet traversal.
 const STRUCTURES: [(&str, Build); 17] = [
-    ("stack", |input| Traversal::Stack(Rays::One).build(input, &Options::DEFAULT)),
-    ("packets of 4", |input| Traversal::Stack(Rays::Four).build(input, &Options::DEFAULT)),
-    ("packets of 64", |input| Traversal::Stack(Rays::SixtyFour).build(input, &Options::DEFAULT)),
+    ("stack", |input| Traversal::Stack(PacketSize::One).build(input, &Options::DEFAULT)),
+    ("packets of 4", |input| Traversal::Stack(PacketSize::Four).build(input, &Options::DEFAULT)),
+    ("packets of 64", |input| Traversal::Stack(PacketSize::SixtyFour).build(input, &Options::DEFAULT)),
     ("turned boxes", |input| Traversal::Oriented.build(input, &Options::DEFAULT)),
     ("slabs", |input| Traversal::Slabs.build(input, &Options::DEFAULT)),
     ("six threads", |input| Traversal::Threaded(Orders::Six).build(input, &Options::DEFAULT)),

@@ -1,6 +1,6 @@
 //! Queries with a hit filter: the caller decides for each intersection whether it counts.
 
-use super::query::{Closest, Query, Wanted};
+use super::query::{ClosestQuery, Query, Wanted};
 use raywright_base::math::Hit;
 use raywright_shapes::Candidate;
 use raywright_shapes::triangle::Along;
@@ -28,7 +28,7 @@ impl Query for Kept<'_> {
 
     #[inline(always)]
     fn start(&self, i: usize, t_max: f64) -> (usize, Hit) {
-        (i, Closest(&mut []).start(i, t_max))
+        (i, ClosestQuery(&mut []).start(i, t_max))
     }
     #[inline(always)]
     fn limit(state: &(usize, Hit)) -> f64 {
@@ -39,11 +39,11 @@ impl Query for Kept<'_> {
         if !(self.counts)(*ray, primitive, &candidate) {
             return false;
         }
-        Closest(&mut []).offer(best, primitive, candidate);
+        ClosestQuery(&mut []).offer(best, primitive, candidate);
         self.any
     }
     #[inline(always)]
     fn finish(&mut self, i: usize, answer: Option<(Along, (usize, Hit))>) {
-        Closest(self.hits).finish(i, answer.map(|(ray, (_, hit))| (ray, hit)));
+        ClosestQuery(self.hits).finish(i, answer.map(|(ray, (_, hit))| (ray, hit)));
     }
 }

@@ -53,7 +53,7 @@ pub use query::{Every, Meeting, Wanted};
 
 use filtered_query::Kept;
 use parity::WaysOut;
-use query::{Answers, Counted};
+use query::{Answers, CostQuery};
 use rare_query::RareQuery;
 use raywright_base::math::{DVec3, Hit, HitColumns, Ray, RayColumns, Region};
 use raywright_base::parallel::{self, CHUNK};
@@ -288,7 +288,7 @@ impl<A: Answers> Accelerator for A {
 
     fn cost(&self, rays: &[Ray], costs: &mut [Cost]) {
         assert_eq!(rays.len(), costs.len(), "a cost for each ray");
-        self.answer(rays, &mut Counted(costs));
+        self.answer(rays, &mut CostQuery(costs));
     }
 
     fn boxes(&self) -> Option<Vec<Boxes>> {

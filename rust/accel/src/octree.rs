@@ -7,7 +7,7 @@
 //! The `t` of a plane is uncertain by an amount that is the same for all planes across an axis. Children that the ray
 //! certainly misses are skipped; all others are visited.
 
-use super::walk::{Halves, Input, Lists, Part, Plane, Room, Structure, Walker};
+use super::walk::{BuildBudget, Input, Lists, PartPosition, PrimitivePart, SplitPlane, Structure, Walker};
 use super::{Info, NodeBox, SlabRay};
 use raywright_base::math::Aabb;
 use raywright_base::math::robust::{greater, lesser};
@@ -111,9 +111,9 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
         return (Box::new(tree), lists);
     }
     tree.nodes.push(Node::EMPTY);
-    let room = Room::new(parts.len(), max_depth);
+    let room = BuildBudget::new(parts.len(), max_depth);
     let mut open = vec![(OctreeCell { node: 0, aabb: bounds, at: [0; 3], depth: 0 }, parts, room)];
-    let (steps, mut told) = (input.work.steps(Room::STEPS), 0);
+    let (steps, mut told) = (input.work.steps(BuildBudget::STEPS), 0);
     while let Some((cell, parts, room)) = open.pop() {
         if parts.len() > SHARE && steps.is_stopped() {
             break;
@@ -124,7 +124,7 @@ pub fn build(input: &Input, options: &Options) -> (Box<dyn Structure>, Lists) {
         let Some((children, rooms)) = parted else {
             tree.depth = tree.depth.max(cell.depth);
             told += room.steps();
-            if told > Room::STEPS / 1000 && steps.did(std::mem::take(&mut told)).is_err() {
+            if told > BuildBudget::STEPS / 1000 && steps.did(std::mem::take(&mut told)).is_err() {
                 break;
             }
             tree.sah_cost += share * parts.len() as f64;
@@ -158,10 +158,10 @@ struct OctreeCell {
 
 impl Octree {
     /// The splitting plane, rounded to f32. Rays use the exact position and allow for the difference.
-    fn plane(&self, cell: &OctreeCell, axis: usize) -> Plane {
+    fn plane(&self, cell: &OctreeCell, axis: usize) -> SplitPlane {
         let (min, max) = (f64::from(self.bounds.min[axis]), f64::from(self.bounds.max[axis]));
         let share = f64::from(2 * cell.at[axis] + 1) / f64::from(1u32 << (cell.depth + 1));
-        Plane { axis, at: (min + (max - min) * share) as f32 }
+        SplitPlane { axis, at: (min + (max - min) * share) as f32 }
     }
 
     /// One of eight consecutive children. Bits 0 to 2 of its octant are set if it lies above the plane normal to x to
@@ -182,14 +182,14 @@ impl Octree {
         &self,
         input: &Input,
         cell: &OctreeCell,
-        parts: &[Part],
-        room: Room,
-    ) -> Option<([Vec<Part>; 8], [Room; 8])> {
+        parts: &[PrimitivePart],
+        room: BuildBudget,
+    ) -> Option<([Vec<PrimitivePart>; 8], [BuildBudget; 8])> {
         if room.depth == 0 {
             return None;
         }
-        let dealt = |parts: &[Part]| {
-            let mut children: [Vec<Part>; 8] = from_fn(|_| Vec::new());
+        let dealt = |parts: &[PrimitivePart]| {
+            let mut children: [Vec<PrimitivePart>; 8] = from_fn(|_| Vec::new());
             for part in parts {
                 self.deal(input, cell, *part, &mut |octant, part| children[octant].push(part));
             }
@@ -208,7 +208,7 @@ impl Octree {
     }
 
     /// Clip a part to each child that it overlaps.
-    fn deal(&self, input: &Input, cell: &OctreeCell, part: Part, to: &mut impl FnMut(usize, Part)) {
+    fn deal(&self, input: &Input, cell: &OctreeCell, part: PrimitivePart, to: &mut impl FnMut(usize, PrimitivePart)) {
         let mut pieces = [(0, part); 8];
         let mut count = 1;
         for axis in 0..3 {
@@ -218,10 +218,10 @@ impl Octree {
                 let (octant, part) = pieces[i];
                 let above = octant | 1 << axis;
                 match part.halves(input, plane) {
-                    Halves::Below | Halves::Within => {}
-                    Halves::Above => pieces[i].0 = above,
-                    Halves::Both(halves) => {
-                        let [below_part, above_part] = halves.map(|aabb| Part { aabb, ..part });
+                    PartPosition::Below | PartPosition::Within => {}
+                    PartPosition::Above => pieces[i].0 = above,
+                    PartPosition::Both(halves) => {
+                        let [below_part, above_part] = halves.map(|aabb| PrimitivePart { aabb, ..part });
                         pieces[i].1 = below_part;
                         pieces[count] = (above, above_part);
                         count += 1;
@@ -249,7 +249,7 @@ impl Octree {
     }
 
     /// Return whether a part is in all the leaves it overlaps below a node.
-    fn stands(&self, input: &Input, lists: &[Vec<u32>], cell: &OctreeCell, part: Part) -> bool {
+    fn stands(&self, input: &Input, lists: &[Vec<u32>], cell: &OctreeCell, part: PrimitivePart) -> bool {
         match self.nodes[cell.node].children() {
             Some(first) => {
                 let mut all = true;

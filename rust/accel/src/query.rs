@@ -65,9 +65,9 @@ pub trait Query {
 }
 
 /// The closest hit.
-pub struct Closest<'a>(pub &'a mut [Hit]);
+pub struct ClosestQuery<'a>(pub &'a mut [Hit]);
 
-impl Query for Closest<'_> {
+impl Query for ClosestQuery<'_> {
     type State = Hit;
     const WANTED: Wanted = Wanted::Closest;
 
@@ -177,16 +177,16 @@ impl Query for Every {
 }
 
 /// The cost of the closest hit.
-pub struct Counted<'a>(pub &'a mut [Cost]);
+pub struct CostQuery<'a>(pub &'a mut [Cost]);
 
-impl Query for Counted<'_> {
+impl Query for CostQuery<'_> {
     type State = (Hit, Cost);
     const WANTED: Wanted = Wanted::Closest;
     const COUNTED: bool = true;
 
     #[inline(always)]
     fn start(&self, i: usize, t_max: f64) -> (Hit, Cost) {
-        (Closest(&mut []).start(i, t_max), Cost::default())
+        (ClosestQuery(&mut []).start(i, t_max), Cost::default())
     }
     #[inline(always)]
     fn limit(state: &(Hit, Cost)) -> f64 {
@@ -194,7 +194,7 @@ impl Query for Counted<'_> {
     }
     #[inline(always)]
     fn offer(&mut self, state: &mut (Hit, Cost), primitive: u32, candidate: Candidate) -> bool {
-        Closest(&mut []).offer(&mut state.0, primitive, candidate)
+        ClosestQuery(&mut []).offer(&mut state.0, primitive, candidate)
     }
     #[inline(always)]
     fn finish(&mut self, i: usize, answer: Option<(Along, (Hit, Cost))>) {
@@ -217,7 +217,7 @@ pub trait Answers: Send + Sync + Sized + 'static {
 
     /// See [`super::Accelerator::intersect`].
     fn intersect(&self, rays: &[Ray], hits: &mut [Hit]) {
-        self.answer(rays, &mut Closest(hits));
+        self.answer(rays, &mut ClosestQuery(hits));
     }
 
     /// See [`super::Accelerator::occluded`].

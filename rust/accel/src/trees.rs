@@ -36,6 +36,11 @@ pub fn binary(
 }
 
 /// The same as flat arrays without pointers.
-pub fn flat(primitives: &dyn Primitives, options: &Options, way: flat::Way, level: Level) -> Box<dyn Accelerator> {
+pub fn flat(
+    primitives: &dyn Primitives,
+    options: &Options,
+    way: flat::FlatTraversal,
+    level: Level,
+) -> Box<dyn Accelerator> {
     walked(primitives, level, Mailbox::Stamps, &|input| flat::build(input, options, way))
 }

@@ -3,7 +3,7 @@
 use super::numbers::one_of;
 use arbitrary::{Result, Unstructured};
 use raywright::accel::bvh::build::binned::MAX_BINS;
-use raywright::accel::bvh::build::halves::Way;
+use raywright::accel::bvh::build::halves::SplitRule;
 use raywright::accel::bvh::build::morton::Bits;
 use raywright::accel::bvh::build::{Builder, ploc};
 use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
@@ -17,7 +17,7 @@ pub fn builder(u: &mut Unstructured) -> Result<Builder> {
         Builder::Spatial { bins, budget: one_of(u, &[0.0, 0.3, 1.0, 4.0])? },
         Builder::Morton(one_of(u, &[Bits::Thirty, Bits::SixtyThree])?),
         Builder::Ploc { radius: u.int_in_range(1..=ploc::MAX_RADIUS)? },
-        Builder::Halves(one_of(u, &[Way::Midpoint, Way::Median, Way::Mean])?),
+        Builder::Halves(one_of(u, &[SplitRule::Midpoint, SplitRule::Median, SplitRule::Mean])?),
     ];
     one_of(u, &all)
 }

@@ -6,11 +6,11 @@
 //! surface area on both sides is computed and all pieces are counted, cut ones on both sides. This weighs balance
 //! against splits.
 
-use super::cell::Cell;
+use super::cell::BspCell;
 use super::pieces::{Piece, TOLERANCE, triangle};
-use super::plane::{Plane, Side};
+use super::plane::{BspPlane, PlaneSide};
 use super::{Child, MAX_DEPTH, Node, Options};
-use crate::walk::{Input, Lists, Room};
+use crate::walk::{BuildBudget, Input, Lists};
 use raywright_base::math::DVec3;
 use raywright_base::parallel;
 use raywright_base::work::Steps;
@@ -44,12 +44,12 @@ pub struct Grown {
 pub fn build(input: &Input, options: &Options) -> (Child, Grown) {
     let (parts, bounds) = input.parts();
     let pieces: Vec<_> = parts.iter().map(|part| Piece::whole(input, part.primitive)).collect();
-    let depth = options.max_depth.unwrap_or_else(|| Room::depth_for(parts.len()).min(MAX_DEPTH));
+    let depth = options.max_depth.unwrap_or_else(|| BuildBudget::depth_for(parts.len()).min(MAX_DEPTH));
     let mut grown = Grown::default();
-    let room = Room::new(parts.len(), depth);
-    let cell = Cell::new(&bounds);
+    let room = BuildBudget::new(parts.len(), depth);
+    let cell = BspCell::new(&bounds);
     let area = cell.area();
-    let steps = input.work.steps(Room::STEPS);
+    let steps = input.work.steps(BuildBudget::STEPS);
     let root = match pieces.is_empty() {
         true => Child::EMPTY,
         false => BspBuilder { input, options, steps: &steps }.grow(pieces, &cell, 0, room, &mut grown),
@@ -67,15 +67,15 @@ struct BspBuilder<'a> {
 
 /// A plane and the two cells it creates.
 struct BspSplit {
-    plane: Plane,
-    cells: [Cell; 2],
+    plane: BspPlane,
+    cells: [BspCell; 2],
     sides: [Vec<Piece>; 2],
-    rooms: [Room; 2],
+    rooms: [BuildBudget; 2],
 }
 
 impl BspBuilder<'_> {
     /// Build the subtree of a cell.
-    fn grow(self, pieces: Vec<Piece>, cell: &Cell, depth: usize, room: Room, grown: &mut Grown) -> Child {
+    fn grow(self, pieces: Vec<Piece>, cell: &BspCell, depth: usize, room: BuildBudget, grown: &mut Grown) -> Child {
         let count = pieces.len();
         if count > FEW && self.steps.is_stopped() {
             return Child::EMPTY;
@@ -119,12 +119,12 @@ impl BspBuilder<'_> {
     }
 
     /// Split by the best plane; return the pieces if a leaf is cheaper.
-    fn split(self, pieces: Vec<Piece>, cell: &Cell, area: f64, room: Room) -> Result<BspSplit, Vec<Piece>> {
+    fn split(self, pieces: Vec<Piece>, cell: &BspCell, area: f64, room: BuildBudget) -> Result<BspSplit, Vec<Piece>> {
         let mut planes: Vec<_> =
             self.planes(&pieces).into_iter().filter_map(|p| Some((self.guess(&pieces, cell, area, &p)?, p))).collect();
         planes.sort_by(|a, b| a.0.total_cmp(&b.0));
         let as_leaf = f64::from(self.options.intersection_cost) * pieces.len() as f64;
-        let mut best: Option<(f64, usize, Plane, [Cell; 2])> = None;
+        let mut best: Option<(f64, usize, BspPlane, [BspCell; 2])> = None;
         for (_, plane) in planes.into_iter().take(CLOSELY) {
             let cells = cell.halved(&plane);
             let shares = cells.each_ref().map(|cell| cell.area() / area);
@@ -161,7 +161,7 @@ impl BspBuilder<'_> {
     }
 
     /// Estimate the cost of a plane; None if one side is empty.
-    fn guess(self, pieces: &[Piece], cell: &Cell, area: f64, plane: &Plane) -> Option<f64> {
+    fn guess(self, pieces: &[Piece], cell: &BspCell, area: f64, plane: &BspPlane) -> Option<f64> {
         let areas = cell.guessed_areas(plane, LEAST)?;
         let step = pieces.len().div_ceil(ASKED);
         let counts = counts(pieces.iter().step_by(step), plane);
@@ -170,7 +170,7 @@ impl BspBuilder<'_> {
     }
 
     /// Candidate planes.
-    fn planes(self, pieces: &[Piece]) -> Vec<Plane> {
+    fn planes(self, pieces: &[Piece]) -> Vec<BspPlane> {
         let mut planes = Vec::new();
         let asked = self.options.candidates.min(pieces.len());
         for k in 0..asked {
@@ -178,11 +178,11 @@ impl BspBuilder<'_> {
             let piece = &pieces[(2 * k + 1) * pieces.len() / (2 * asked)];
             if let Some([a, b, c]) = triangle(self.input, piece.primitive) {
                 let normal = (b - a).cross(c - a);
-                planes.extend(Plane::through(a, normal));
+                planes.extend(BspPlane::through(a, normal));
                 for (from, to) in [(a, b), (b, c), (c, a)] {
                     // Normalized first, since the product of short vectors would underflow.
                     let across = normal.normalize_or_zero().cross((to - from).normalize_or_zero());
-                    planes.extend(Plane::through(from, across));
+                    planes.extend(BspPlane::through(from, across));
                 }
             }
             planes.extend(across(piece.extremes()));
@@ -191,25 +191,25 @@ impl BspBuilder<'_> {
         let [min, max] = pieces.iter().map(Piece::extremes).fold(nothing, |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         planes.extend(across([min, max]));
         let middle = 0.5 * (min + max);
-        planes.extend((0..3).map(|axis| Plane::across(axis, middle[axis])));
+        planes.extend((0..3).map(|axis| BspPlane::across(axis, middle[axis])));
         planes
     }
 }
 
 /// The axis-aligned planes around a box.
-fn across(extremes: [DVec3; 2]) -> impl Iterator<Item = Plane> {
-    extremes.into_iter().flat_map(|corner| (0..3).map(move |axis| Plane::across(axis, corner[axis])))
+fn across(extremes: [DVec3; 2]) -> impl Iterator<Item = BspPlane> {
+    extremes.into_iter().flat_map(|corner| (0..3).map(move |axis| BspPlane::across(axis, corner[axis])))
 }
 
 /// The numbers of pieces behind a plane, in front of it, and in it.
-fn counts<'a>(pieces: impl Iterator<Item = &'a Piece>, plane: &Plane) -> [usize; 3] {
+fn counts<'a>(pieces: impl Iterator<Item = &'a Piece>, plane: &BspPlane) -> [usize; 3] {
     let mut counts = [0; 3];
     for piece in pieces {
-        match Plane::side(piece.range(plane), TOLERANCE) {
-            Side::Back => counts[0] += 1,
-            Side::Front => counts[1] += 1,
-            Side::Within => counts[2] += 1,
-            Side::Both => (counts[0], counts[1]) = (counts[0] + 1, counts[1] + 1),
+        match BspPlane::side(piece.range(plane), TOLERANCE) {
+            PlaneSide::Back => counts[0] += 1,
+            PlaneSide::Front => counts[1] += 1,
+            PlaneSide::Within => counts[2] += 1,
+            PlaneSide::Both => (counts[0], counts[1]) = (counts[0] + 1, counts[1] + 1),
         }
     }
     counts

@@ -1,17 +1,17 @@
 //! Convex cells of a BSP tree, whose surface area is proportional to the probability of a ray hitting them.
 
-use super::plane::Plane;
+use super::plane::BspPlane;
 use raywright_base::math::{Aabb, DVec3};
 
 /// A convex polyhedron, given by its faces. It is used only for expected costs, which tolerate rounding.
 #[derive(Clone, Debug)]
-pub struct Cell {
+pub struct BspCell {
     faces: Vec<Vec<DVec3>>,
     /// The area times the normal of each face, in either orientation.
     areas: Vec<DVec3>,
 }
 
-impl Cell {
+impl BspCell {
     /// A box.
     pub fn new(aabb: &Aabb) -> Self {
         let corners = [aabb.min.as_dvec3(), aabb.max.as_dvec3()];
@@ -39,7 +39,7 @@ impl Cell {
     }
 
     /// The least and the greatest height over a plane.
-    pub fn range(&self, plane: &Plane) -> [f64; 2] {
+    pub fn range(&self, plane: &BspPlane) -> [f64; 2] {
         let ranges = self.faces.iter().map(|face| plane.range(face));
         ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [least, greatest]| [a.min(least), b.max(greatest)])
     }
@@ -48,7 +48,7 @@ impl Cell {
     /// wide as the cell's projection: each side has two ends, and its fraction of the lateral surface.
     ///
     /// None if the cell extends less than `least` on a side.
-    pub fn guessed_areas(&self, plane: &Plane, least: f64) -> Option<[f64; 2]> {
+    pub fn guessed_areas(&self, plane: &BspPlane, least: f64) -> Option<[f64; 2]> {
         let [lowest, highest] = self.range(plane);
         let back = -lowest / (highest - lowest);
         // Every ray along the normal that hits the cell crosses its surface twice.
@@ -59,7 +59,7 @@ impl Cell {
     }
 
     /// The parts behind and in front of a plane.
-    pub fn halved(&self, plane: &Plane) -> [Self; 2] {
+    pub fn halved(&self, plane: &BspPlane) -> [Self; 2] {
         let mut cuts = Vec::new();
         let mut halves = [Vec::with_capacity(self.faces.len() + 1), Vec::with_capacity(self.faces.len() + 1)];
         for face in &self.faces {
@@ -102,22 +102,22 @@ mod tests {
     use super::*;
     use raywright_base::math::Vec3;
 
-    fn cube() -> Cell {
-        Cell::new(&Aabb { min: Vec3::ZERO, max: Vec3::ONE })
+    fn cube() -> BspCell {
+        BspCell::new(&Aabb { min: Vec3::ZERO, max: Vec3::ONE })
     }
 
     #[test]
     fn a_cube_has_six_squares_and_its_halves_five_sixths_of_them_together_with_two_cuts() {
         assert_eq!(cube().area(), 6.0);
-        let halves = cube().halved(&Plane::across(1, 0.25));
-        assert_eq!(halves.each_ref().map(Cell::area), [3.0, 5.0]);
-        let [back, front] = cube().halved(&Plane::across(2, -0.5));
+        let halves = cube().halved(&BspPlane::across(1, 0.25));
+        assert_eq!(halves.each_ref().map(BspCell::area), [3.0, 5.0]);
+        let [back, front] = cube().halved(&BspPlane::across(2, -0.5));
         assert_eq!((back.area(), front.area()), (0.0, 6.0));
     }
 
     #[test]
     fn a_corner_is_a_tetrahedron_and_the_rest_has_what_it_lacks() {
-        let plane = Plane::through(DVec3::new(0.5, 0.0, 0.0), DVec3::ONE).unwrap();
+        let plane = BspPlane::through(DVec3::new(0.5, 0.0, 0.0), DVec3::ONE).unwrap();
         let [corner, rest] = cube().halved(&plane);
         let (legs, cut) = (3.0 / 8.0, 3f64.sqrt() / 8.0);
         assert!((corner.area() - (legs + cut)).abs() < 1e-15);
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn through_the_middle_across_the_diagonal_the_cut_is_a_hexagon() {
-        let plane = Plane::through(DVec3::splat(0.5), DVec3::ONE).unwrap();
+        let plane = BspPlane::through(DVec3::splat(0.5), DVec3::ONE).unwrap();
         let hexagon = 0.75 * 3f64.sqrt();
         for half in cube().halved(&plane) {
             assert!((half.area() - (3.0 + hexagon)).abs() < 1e-14);
@@ -135,15 +135,15 @@ mod tests {
 
     #[test]
     fn halves_of_a_prism_are_guessed_right() {
-        let plane = Plane::across(1, 0.25);
+        let plane = BspPlane::across(1, 0.25);
         let halves = cube().halved(&plane);
-        assert_eq!(cube().guessed_areas(&plane, 0.0), Some(halves.each_ref().map(Cell::area)));
+        assert_eq!(cube().guessed_areas(&plane, 0.0), Some(halves.each_ref().map(BspCell::area)));
         assert_eq!(cube().guessed_areas(&plane, 0.3), None);
     }
 
     #[test]
     fn a_plane_through_corners_counts_them_once() {
-        let plane = Plane::through(DVec3::ZERO, DVec3::new(1.0, -1.0, 0.0)).unwrap();
+        let plane = BspPlane::through(DVec3::ZERO, DVec3::new(1.0, -1.0, 0.0)).unwrap();
         for half in cube().halved(&plane) {
             assert!((half.area() - (3.0 + 2f64.sqrt())).abs() < 1e-14);
         }

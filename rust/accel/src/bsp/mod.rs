@@ -13,7 +13,7 @@ mod plane;
 use super::walk::{Input, Lists, Structure, Walker};
 use super::{Info, SlabRay};
 use pieces::{Piece, TOLERANCE};
-use plane::{Plane, Side};
+use plane::{BspPlane, PlaneSide};
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{Aabb, DVec3};
 
@@ -66,7 +66,7 @@ impl Default for Options {
 /// A plane and the children behind and in front of it.
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    plane: Plane,
+    plane: BspPlane,
     children: [Child; 2],
 }
 
@@ -155,7 +155,7 @@ impl Bsp {
             sides.all(|(child, piece)| piece.is_none_or(|piece| self.stands(lists, child, piece)))
         };
         // A piece in the plane may be on either side.
-        on(0) || (Plane::side(piece.range(&plane), TOLERANCE) == Side::Within && on(1))
+        on(0) || (BspPlane::side(piece.range(&plane), TOLERANCE) == PlaneSide::Within && on(1))
     }
 }
 
@@ -195,7 +195,7 @@ impl Structure for Bsp {
             if i < least || i >= self.nodes.len() || depths[i].replace(depth).is_some() {
                 return Err(format!("node {i} of {} has a parent behind it, or two parents", self.nodes.len()));
             }
-            let Node { plane: Plane { normal, offset }, children } = self.nodes[i];
+            let Node { plane: BspPlane { normal, offset }, children } = self.nodes[i];
             if (normal.abs().element_sum() - 1.0).abs() > 1e-12 || !offset.is_finite() {
                 return Err(format!("node {i} has the plane {normal} · p = {offset}"));
             }

@@ -1,6 +1,6 @@
 //! Pieces of primitives cut by BSP planes.
 
-use super::plane::{Plane, Side};
+use super::plane::{BspPlane, PlaneSide};
 use crate::walk::Input;
 use raywright_base::math::{Aabb, DVec3};
 
@@ -13,12 +13,12 @@ pub const TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
 #[derive(Clone, Debug)]
 pub struct Piece {
     pub primitive: u32,
-    pub outline: Outline,
+    pub outline: PieceExtent,
 }
 
 /// The extent of a piece in box units.
 #[derive(Clone, Debug)]
-pub enum Outline {
+pub enum PieceExtent {
     /// A convex polygon, part of a triangle.
     Polygon(Vec<DVec3>),
     /// A box, for other primitives. Only axis-aligned planes cut it.
@@ -29,52 +29,52 @@ impl Piece {
     /// A whole primitive.
     pub fn whole(input: &Input, primitive: u32) -> Self {
         let outline = match triangle(input, primitive) {
-            Some(corners) => Outline::Polygon(corners.to_vec()),
+            Some(corners) => PieceExtent::Polygon(corners.to_vec()),
             None => {
                 let Aabb { min, max } = input.boxes[primitive as usize];
-                Outline::Box([min.as_dvec3(), max.as_dvec3()])
+                PieceExtent::Box([min.as_dvec3(), max.as_dvec3()])
             }
         };
         Self { primitive, outline }
     }
 
     /// The least and greatest height over a plane.
-    pub fn range(&self, plane: &Plane) -> [f64; 2] {
+    pub fn range(&self, plane: &BspPlane) -> [f64; 2] {
         match &self.outline {
-            Outline::Polygon(corners) => plane.range(corners),
-            Outline::Box(corners) => plane.range_of_box(*corners),
+            PieceExtent::Polygon(corners) => plane.range(corners),
+            PieceExtent::Box(corners) => plane.range_of_box(*corners),
         }
     }
 
     /// The bounding box.
     pub fn extremes(&self) -> [DVec3; 2] {
         match &self.outline {
-            Outline::Polygon(corners) => {
+            PieceExtent::Polygon(corners) => {
                 let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
                 corners.iter().fold(nothing, |[min, max], &p| [min.min(p), max.max(p)])
             }
-            Outline::Box(corners) => *corners,
+            PieceExtent::Box(corners) => *corners,
         }
     }
 
     /// Split into the parts behind and in front of a plane. A piece in the plane goes to side `within`; that is correct
     /// because rays so near to the plane visit both sides.
-    pub fn parted(self, plane: &Plane, within: usize) -> [Option<Self>; 2] {
-        match Plane::side(self.range(plane), TOLERANCE) {
-            Side::Back => [Some(self), None],
-            Side::Front => [None, Some(self)],
-            Side::Within if within == 0 => [Some(self), None],
-            Side::Within => [None, Some(self)],
-            Side::Both => {
+    pub fn parted(self, plane: &BspPlane, within: usize) -> [Option<Self>; 2] {
+        match BspPlane::side(self.range(plane), TOLERANCE) {
+            PlaneSide::Back => [Some(self), None],
+            PlaneSide::Front => [None, Some(self)],
+            PlaneSide::Within if within == 0 => [Some(self), None],
+            PlaneSide::Within => [None, Some(self)],
+            PlaneSide::Both => {
                 let primitive = self.primitive;
                 let halves = match self.outline {
-                    Outline::Polygon(corners) => plane.cut(&corners, &mut Vec::new()).map(Outline::Polygon),
-                    Outline::Box([min, max]) => {
+                    PieceExtent::Polygon(corners) => plane.cut(&corners, &mut Vec::new()).map(PieceExtent::Polygon),
+                    PieceExtent::Box([min, max]) => {
                         let (mut below, mut above) = (max, min);
                         if let Some(axis) = plane.axis() {
                             (below[axis], above[axis]) = (plane.offset, plane.offset);
                         }
-                        [Outline::Box([min, below]), Outline::Box([above, max])]
+                        [PieceExtent::Box([min, below]), PieceExtent::Box([above, max])]
                     }
                 };
                 halves.map(|outline| Some(Self { primitive, outline }))

@@ -7,14 +7,14 @@ use raywright_base::math::DVec3;
 /// The absolute coordinates of the normal sum to 1. So moving each coordinate of a point by at most e changes its
 /// height by at most e.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
+pub struct BspPlane {
     pub normal: DVec3,
     pub offset: f64,
 }
 
 /// The position of an object relative to a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum PlaneSide {
     Back,
     Front,
     /// In the plane to within the tolerance: it may go to either side.
@@ -22,7 +22,7 @@ pub enum Side {
     Both,
 }
 
-impl Plane {
+impl BspPlane {
     /// The plane through a point; None if the normal is too short.
     pub fn through(point: DVec3, normal: DVec3) -> Option<Self> {
         let size = normal.abs().element_sum();
@@ -61,12 +61,12 @@ impl Plane {
     }
 
     /// Classify an object by its range of heights; crossing the plane by at most `tolerance` is ignored.
-    pub fn side([least, greatest]: [f64; 2], tolerance: f64) -> Side {
+    pub fn side([least, greatest]: [f64; 2], tolerance: f64) -> PlaneSide {
         match (greatest <= tolerance, least >= -tolerance) {
-            (true, true) => Side::Within,
-            (true, false) => Side::Back,
-            (false, true) => Side::Front,
-            (false, false) => Side::Both,
+            (true, true) => PlaneSide::Within,
+            (true, false) => PlaneSide::Back,
+            (false, true) => PlaneSide::Front,
+            (false, false) => PlaneSide::Both,
         }
     }
 

@@ -11,4 +11,4 @@ pub use arrays::{Flat, FlatInstance, FlatTriangle};
 pub use nodes::FlatNode;
 pub use rays::{FlatRay, flat_ray};
 pub use settle::{CANDIDATES, CERTAIN, NO_CANDIDATE, OVERFLOW, Settled, Settler};
-pub use walks::{Way, build};
+pub use walks::{FlatTraversal, build};

@@ -4,7 +4,7 @@
 //! is tested as in any leaf. For a candidate that is certain, only its `t` is computed, for sixteen rays at a time.
 
 use super::arrays::Flat;
-use crate::query::{Closest, Query};
+use crate::query::{ClosestQuery, Query};
 use crate::{Accelerator, Primitives, UserGeometry, Wanted};
 use raywright_base::math::{DVec3, Hit, Ray, Region};
 use raywright_base::simd::{Level, loops};
@@ -148,7 +148,7 @@ impl<'a> Settler<'a> {
     /// The first hit among candidates.
     fn first(&self, ray: &Ray, candidates: &[u32]) -> Hit {
         let mut hit = [Hit::MISS];
-        let mut query = Closest(&mut hit);
+        let mut query = ClosestQuery(&mut hit);
         let answer = EdgeRay::new(ray, self.region).map(|edges| {
             let mut state = query.start(0, edges.t_max);
             for &primitive in candidates.iter().take_while(|&&p| p < CERTAIN).chain(self.unbounded) {
@@ -158,7 +158,7 @@ impl<'a> Settler<'a> {
                         query.offer(&mut state, primitive, candidate);
                     }
                 } else if let Some(objects) = &self.objects {
-                    let t_max = edges.t_max.min(Closest::limit(&state));
+                    let t_max = edges.t_max.min(ClosestQuery::limit(&state));
                     let asked = Ray { t_min: edges.t_min, t_max, time: ray.time, ..along(&edges) };
                     objects.meet(primitive, Wanted::Closest, &asked, &mut |met| {
                         (met.t * edges.scale).is_finite() && query.offer(&mut state, primitive, met)

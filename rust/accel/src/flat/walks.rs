@@ -9,7 +9,7 @@ use crate::{Info, NodeBox, SlabRay};
 
 /// Traversal algorithms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum FlatTraversal {
     /// With a stack.
     Stack,
     /// Without one.
@@ -20,18 +20,18 @@ struct FlatTree {
     nodes: Vec<FlatNode>,
     /// The other data of the tree, without its nodes.
     outline: Numbered,
-    way: Way,
+    way: FlatTraversal,
     kind: String,
 }
 
 /// Build a tree with the given options and flatten it.
-pub fn build(input: &Input, options: &Options, way: Way) -> Built {
+pub fn build(input: &Input, options: &Options, way: FlatTraversal) -> Built {
     let (mut bvh, name) = gathered(input, options, BLOCK);
     larger_first(&mut bvh);
     let (numbered, lists) = Numbered::new(bvh);
     let kind = match way {
-        Way::Stack => "flat, stack",
-        Way::Stackless => "flat, stackless",
+        FlatTraversal::Stack => "flat, stack",
+        FlatTraversal::Stackless => "flat, stackless",
     };
     (Box::new(FlatTree::of(numbered, way, format!("BVH, {name}, {kind}"))), lists)
 }
@@ -40,7 +40,7 @@ pub fn build(input: &Input, options: &Options, way: Way) -> Built {
 const BLOCK: usize = 4;
 
 impl FlatTree {
-    fn of(mut outline: Numbered, way: Way, kind: String) -> Self {
+    fn of(mut outline: Numbered, way: FlatTraversal, kind: String) -> Self {
         let nodes = flatten(&std::mem::take(&mut outline.nodes));
         Self { nodes, outline, way, kind }
     }
@@ -52,14 +52,16 @@ impl FlatTree {
         numbered
     }
 
-    fn along(&self, counted: bool, way: Way) -> Box<dyn Walker + '_> {
+    fn along(&self, counted: bool, way: FlatTraversal) -> Box<dyn Walker + '_> {
         let (nodes, ray) = (self.nodes.as_slice(), SlabRay::EVERYWHERE);
         let stack = Vec::with_capacity(self.outline.depth + 1);
         match (way, counted) {
-            (Way::Stackless, true) => Box::new(Stackless::<true> { nodes, ray, at: nodes.len(), visited: 0 }),
-            (Way::Stackless, false) => Box::new(Stackless::<false> { nodes, ray, at: nodes.len(), visited: 0 }),
-            (Way::Stack, true) => Box::new(Stacked::<true> { nodes, ray, stack, visited: 0 }),
-            (Way::Stack, false) => Box::new(Stacked::<false> { nodes, ray, stack, visited: 0 }),
+            (FlatTraversal::Stackless, true) => Box::new(Stackless::<true> { nodes, ray, at: nodes.len(), visited: 0 }),
+            (FlatTraversal::Stackless, false) => {
+                Box::new(Stackless::<false> { nodes, ray, at: nodes.len(), visited: 0 })
+            }
+            (FlatTraversal::Stack, true) => Box::new(Stacked::<true> { nodes, ray, stack, visited: 0 }),
+            (FlatTraversal::Stack, false) => Box::new(Stacked::<false> { nodes, ray, stack, visited: 0 }),
         }
     }
 }
@@ -71,7 +73,7 @@ impl Structure for FlatTree {
 
     fn any_walker(&self) -> Box<dyn Walker + '_> {
         // For occlusion, larger boxes come first in the given order, without sorting.
-        self.along(false, Way::Stackless)
+        self.along(false, FlatTraversal::Stackless)
     }
 
     fn info(&self) -> Info {

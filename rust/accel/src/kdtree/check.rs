@@ -1,7 +1,7 @@
 //! Validation of kd-trees.
 
 use super::KdTree;
-use crate::walk::{Halves, Input, Part};
+use crate::walk::{Input, PartPosition, PrimitivePart};
 use raywright_base::math::Aabb;
 
 /// Check a tree, given the primitives of each leaf; the error describes the violation.
@@ -60,7 +60,7 @@ pub fn check(tree: &KdTree, input: &Input, primitives: &dyn Fn(u32) -> Vec<u32>)
 }
 
 /// Return whether a part is in all the leaves it overlaps below a node.
-fn stands(tree: &KdTree, input: &Input, lists: &[Vec<u32>], node: usize, part: Part) -> bool {
+fn stands(tree: &KdTree, input: &Input, lists: &[Vec<u32>], node: usize, part: PrimitivePart) -> bool {
     if part.aabb.is_empty() {
         return true;
     }
@@ -68,11 +68,11 @@ fn stands(tree: &KdTree, input: &Input, lists: &[Vec<u32>], node: usize, part: P
         let leaf = tree.nodes[node];
         return leaf.count() > 0 && lists[leaf.number() as usize].binary_search(&part.primitive).is_ok();
     };
-    let on = |side: usize, aabb: Aabb| stands(tree, input, lists, children + side, Part { aabb, ..part });
+    let on = |side: usize, aabb: Aabb| stands(tree, input, lists, children + side, PrimitivePart { aabb, ..part });
     match part.halves(input, plane) {
-        Halves::Below => on(0, part.aabb),
-        Halves::Above => on(1, part.aabb),
-        Halves::Within => on(0, part.aabb) || on(1, part.aabb),
-        Halves::Both([below, above]) => on(0, below) && on(1, above),
+        PartPosition::Below => on(0, part.aabb),
+        PartPosition::Above => on(1, part.aabb),
+        PartPosition::Within => on(0, part.aabb) || on(1, part.aabb),
+        PartPosition::Both([below, above]) => on(0, below) && on(1, above),
     }
 }

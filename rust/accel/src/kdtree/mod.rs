@@ -14,7 +14,7 @@ mod stack;
 pub use build::{Builder, Options};
 pub use node::Node;
 
-use super::walk::{Input, Lists, Plane, Structure, Walker};
+use super::walk::{Input, Lists, SplitPlane, Structure, Walker};
 use super::{Info, NodeBox};
 use raywright_base::math::Aabb;
 
@@ -98,9 +98,9 @@ impl KdTree {
     }
 
     /// The plane and first child of an inner node.
-    fn plane(&self, node: usize) -> Option<(Plane, usize)> {
+    fn plane(&self, node: usize) -> Option<(SplitPlane, usize)> {
         let node = self.nodes[node];
-        let plane = || Plane { axis: node.axis(), at: node.plane() };
+        let plane = || SplitPlane { axis: node.axis(), at: node.plane() };
         (!node.is_leaf()).then(|| (plane(), node.children() as usize))
     }
 

@@ -19,7 +19,7 @@ pub struct PlaneRay([AxisPlane; 4]);
 
 /// The intervals of a ray on the two sides of a plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Sides {
+pub struct SideIntervals {
     /// The near child, as 0 or 1.
     pub first: u32,
     /// The ray is not on the far side before this.
@@ -42,9 +42,9 @@ impl PlaneRay {
 
     /// The earliest and the latest `t` of a plane.
     #[inline(always)]
-    pub fn sides(&self, axis: usize, plane: f32) -> Sides {
+    pub fn sides(&self, axis: usize, plane: f32) -> SideIntervals {
         let AxisPlane { inverse, near, far, first } = self.0[axis & 3];
         let t = plane * inverse;
-        Sides { first, from: t + near, until: t + far }
+        SideIntervals { first, from: t + near, until: t + far }
     }
 }

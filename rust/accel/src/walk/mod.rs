@@ -18,8 +18,8 @@ pub(super) use contents::Contents;
 pub(super) use few_objects::Few;
 pub use mailbox::Mailbox;
 pub(super) use mailbox::{Mailboxes, Marks};
-pub(super) use parts::{Halves, Part, Plane};
-pub(super) use room::Room;
+pub(super) use parts::{PartPosition, PrimitivePart, SplitPlane};
+pub(super) use room::BuildBudget;
 pub(super) use together::TogetherBatch;
 pub use together::{MOST_TOGETHER, Together};
 

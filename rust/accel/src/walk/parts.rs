@@ -6,7 +6,7 @@ use raywright_shapes::triangle::clipped;
 
 /// The part of a primitive inside a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
+pub struct PrimitivePart {
     /// Its bounding box.
     pub aabb: Aabb,
     /// The primitive's number.
@@ -15,7 +15,7 @@ pub struct Part {
 
 /// The position of a part relative to a splitting plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Halves {
+pub enum PartPosition {
     /// Not above the plane.
     Below,
     /// Not below the plane.
@@ -28,14 +28,14 @@ pub enum Halves {
 
 /// An axis-aligned splitting plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
+pub struct SplitPlane {
     /// The axis, 0 to 2.
     pub axis: usize,
     /// Its position in box units.
     pub at: f32,
 }
 
-impl Plane {
+impl SplitPlane {
     /// Split a box into the two parts.
     pub fn cut(self, aabb: &Aabb) -> [Aabb; 2] {
         let [mut below, mut above] = [*aabb; 2];
@@ -49,7 +49,7 @@ impl Plane {
     }
 }
 
-impl Part {
+impl PrimitivePart {
     /// The center of its box along an axis.
     pub fn centre(&self, axis: usize) -> f32 {
         0.5 * (self.aabb.min[axis] + self.aabb.max[axis])
@@ -59,22 +59,22 @@ impl Part {
     /// Algorithms", 2000): a side gets the triangle only if it overlaps the cell on that side.
     ///
     /// Every point of the primitive in the part's box is in the closed half-space of one of the returned sides.
-    pub fn halves(&self, input: &Input, plane: Plane) -> Halves {
+    pub fn halves(&self, input: &Input, plane: SplitPlane) -> PartPosition {
         let (least, greatest) = (self.aabb.min[plane.axis], self.aabb.max[plane.axis]);
         if least == plane.at && greatest == plane.at {
-            Halves::Within
+            PartPosition::Within
         } else if greatest <= plane.at {
-            Halves::Below
+            PartPosition::Below
         } else if least >= plane.at {
-            Halves::Above
+            PartPosition::Above
         } else {
             let corners = input.primitives.corners(self.primitive);
             let halves = plane.cut(&self.aabb);
             if corners.iter().all(|c| c.is_finite()) {
                 let corners = corners.map(|c| input.region.to_box(c));
-                Halves::Both(halves.map(|half| clipped(corners, &half)))
+                PartPosition::Both(halves.map(|half| clipped(corners, &half)))
             } else {
-                Halves::Both(halves)
+                PartPosition::Both(halves)
             }
         }
     }
@@ -82,9 +82,9 @@ impl Part {
 
 impl Input<'_> {
     /// All bounded primitives that can be hit, and their bounding box.
-    pub fn parts(&self) -> (Vec<Part>, Aabb) {
+    pub fn parts(&self) -> (Vec<PrimitivePart>, Aabb) {
         let numbered = self.boxes.iter().zip(0..).filter(|(aabb, _)| !aabb.is_empty());
-        let parts: Vec<_> = numbered.map(|(&aabb, primitive)| Part { aabb, primitive }).collect();
+        let parts: Vec<_> = numbered.map(|(&aabb, primitive)| PrimitivePart { aabb, primitive }).collect();
         let bounds = parts.iter().fold(Aabb::EMPTY, |b, part| b.union(part.aabb));
         (parts, bounds)
     }

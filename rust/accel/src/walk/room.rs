@@ -2,17 +2,17 @@
 
 /// The budget below a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Room {
+pub struct BuildBudget {
     /// Levels.
     pub depth: usize,
     /// Duplicates that splits may add to the primitives. A node distributes its budget in proportion to the children's
     /// parts, so that threads need not synchronize.
     spare: usize,
-    /// The work below as a fraction of [`Room::STEPS`], distributed likewise.
+    /// The work below as a fraction of [`BuildBudget::STEPS`], distributed likewise.
     steps: usize,
 }
 
-impl Room {
+impl BuildBudget {
     /// Maximum number of duplicates per primitive.
     const SPARE: usize = 8;
 
@@ -54,13 +54,13 @@ mod tests {
 
     #[test]
     fn what_is_shared_is_never_more_than_there_was() {
-        let room = Room::new(10, 2);
+        let room = BuildBudget::new(10, 2);
         assert_eq!(room.spare, 144);
         let children = room.shared(10, [9, 7]).unwrap();
         assert_eq!(children.map(|room| (room.depth, room.spare)), [(1, 77), (1, 60)]);
         assert_eq!(room.shared(10, [150, 4]).unwrap().map(|room| room.spare), [0, 0]);
         assert_eq!(room.shared(10, [150, 5]), None);
-        assert_eq!(Room::new(10, 0).shared(10, [5, 5]), None);
-        assert_eq!((Room::depth_for(0), Room::depth_for(1), Room::depth_for(1 << 20)), (8, 8, 34));
+        assert_eq!(BuildBudget::new(10, 0).shared(10, [5, 5]), None);
+        assert_eq!((BuildBudget::depth_for(0), BuildBudget::depth_for(1), BuildBudget::depth_for(1 << 20)), (8, 8, 34));
     }
 }

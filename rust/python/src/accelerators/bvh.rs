@@ -4,11 +4,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::{Build, unknown, within};
-use raywright::accel::bvh::build::halves::Way;
+use raywright::accel::bvh::build::halves::SplitRule;
 use raywright::accel::bvh::build::morton::Bits;
 use raywright::accel::bvh::build::{Builder, binned, ploc, spatial};
 use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
-use raywright::accel::bvh::traverse::{Orders, Rays, Traversal};
+use raywright::accel::bvh::traverse::{Orders, PacketSize, Traversal};
 use raywright::accel::bvh::{self, Quality};
 use raywright::accel::flat;
 use raywright::accel::trees;
@@ -35,7 +35,7 @@ enum Tree {
     Wide(Option<usize>),
     Binary(Traversal),
     /// Pointer-free arrays.
-    Flat(flat::Way),
+    Flat(flat::FlatTraversal),
 }
 
 impl Bvh {
@@ -84,15 +84,15 @@ impl Bvh {
             }
             "wide8" => Tree::Wide(Some(8)),
             "stack" => Tree::Binary(match self.bounds.as_str() {
-                "box" => Traversal::Stack(Rays::One),
+                "box" => Traversal::Stack(PacketSize::One),
                 "oriented" => Traversal::Oriented,
                 "slabs" => Traversal::Slabs,
                 other => return Err(unknown("bounds", other, &["box", "oriented", "slabs"])),
             }),
-            "packets4" => Tree::Binary(Traversal::Stack(Rays::Four)),
-            "packets64" => Tree::Binary(Traversal::Stack(Rays::SixtyFour)),
-            "flat" => Tree::Flat(flat::Way::Stack),
-            "stackless" => Tree::Flat(flat::Way::Stackless),
+            "packets4" => Tree::Binary(Traversal::Stack(PacketSize::Four)),
+            "packets64" => Tree::Binary(Traversal::Stack(PacketSize::SixtyFour)),
+            "flat" => Tree::Flat(flat::FlatTraversal::Stack),
+            "stackless" => Tree::Flat(flat::FlatTraversal::Stackless),
             "threaded" => Tree::Binary(Traversal::Threaded(orders)),
             other => return Err(unknown("traversal", other, &TRAVERSALS)),
         })
@@ -109,9 +109,9 @@ impl Bvh {
             "spatial" => Builder::Spatial { bins, budget: budget.unwrap_or(spatial::BUDGET) },
             "morton" => Builder::Morton(Bits::default()),
             "ploc" => Builder::Ploc { radius: radius.unwrap_or(ploc::RADIUS) },
-            "midpoint" => Builder::Halves(Way::Midpoint),
-            "median" => Builder::Halves(Way::Median),
-            "mean" => Builder::Halves(Way::Mean),
+            "midpoint" => Builder::Halves(SplitRule::Midpoint),
+            "median" => Builder::Halves(SplitRule::Median),
+            "mean" => Builder::Halves(SplitRule::Mean),
             other => return Err(unknown("builder", other, &BUILDERS)),
         })
     }

@@ -10,7 +10,7 @@ use std::ops::Range;
 pub const MAX_BINS: usize = 64;
 
 /// The number of references on a side of a plane, and their bounds.
-pub type Side = (usize, Bounds);
+pub type BinSide = (usize, Bounds);
 
 /// A plane between bins.
 #[derive(Clone, Copy)]
@@ -39,7 +39,7 @@ impl Split {
     }
 
     /// The cheapest plane and its two sides, in parallel for many references.
-    pub fn best_with_sides(references: &[Reference], extents: &Extents, bins: usize) -> Option<(Self, [Side; 2])> {
+    pub fn best_with_sides(references: &[Reference], extents: &Extents, bins: usize) -> Option<(Self, [BinSide; 2])> {
         let (split, bins) = if references.len() < MANY {
             let mut filled = Bins::new();
             (Self::best(references, extents, bins, &mut filled), filled)
@@ -156,7 +156,7 @@ impl Bins {
     }
 
     /// The content of both sides of a plane.
-    fn sides(&self, split: &Split) -> [Side; 2] {
+    fn sides(&self, split: &Split) -> [BinSide; 2] {
         let last = (split.last - WHOLE) as usize;
         let mut sides = [(0, Bounds::EMPTY); 2];
         for (i, (bounds, &count)) in self.bounds[split.axis].iter().zip(&self.counts[split.axis]).enumerate() {

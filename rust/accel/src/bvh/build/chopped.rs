@@ -151,7 +151,7 @@ impl Chopped {
     }
 
     /// The cheapest plane along an axis.
-    fn best(&self, grid: &ChopGrid, axis: usize, bins: usize, count: usize, budget: usize) -> Option<Plane> {
+    fn best(&self, grid: &ChopGrid, axis: usize, bins: usize, count: usize, budget: usize) -> Option<ChopPlane> {
         let mut after = [(Bounds::EMPTY, 0usize); MAX_BINS];
         let mut right = (Bounds::EMPTY, 0);
         for bin in (1..bins).rev() {
@@ -160,15 +160,15 @@ impl Chopped {
             after[bin] = right;
         }
         let mut left = (Bounds::EMPTY, 0);
-        let mut best: Option<Plane> = None;
+        let mut best: Option<ChopPlane> = None;
         for last in 0..bins - 1 {
             left.0.grow(&self.bounds[axis][last]);
             left.1 += self.begin[axis][last] as usize;
             let right = after[last + 1];
-            let plane = Plane { grid: *grid, axis, last, left, right };
+            let plane = ChopPlane { grid: *grid, axis, last, left, right };
             let allowed = left.1 > 0 && right.1 > 0 && left.1 + right.1 - count <= budget;
             // NaN fails the comparison.
-            if allowed && plane.cost() < best.as_ref().map_or(f32::INFINITY, Plane::cost) {
+            if allowed && plane.cost() < best.as_ref().map_or(f32::INFINITY, ChopPlane::cost) {
                 best = Some(plane);
             }
         }
@@ -178,7 +178,7 @@ impl Chopped {
 
 /// A plane between two bins.
 #[derive(Clone, Copy)]
-pub struct Plane {
+pub struct ChopPlane {
     grid: ChopGrid,
     axis: usize,
     /// The last bin on the left.
@@ -188,7 +188,7 @@ pub struct Plane {
     right: (Bounds, usize),
 }
 
-impl Plane {
+impl ChopPlane {
     /// The cheapest plane that adds no more references than the budget. None once the work is canceled.
     pub fn best(
         references: &[Reference],

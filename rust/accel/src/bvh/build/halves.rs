@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// The position of the split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum SplitRule {
     /// Midway between the first centre and the last; the median if that separates nothing.
     Midpoint,
     /// Equal numbers on both sides, which gives the least depth.
@@ -21,7 +21,7 @@ pub enum Way {
     Mean,
 }
 
-impl Way {
+impl SplitRule {
     /// Its display name.
     pub const fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl Way {
 /// If an option is out of range.
 pub fn build<'a>(
     boxes: impl Into<Cow<'a, [Aabb]>>,
-    way: Way,
+    way: SplitRule,
     leaves: &Leaves,
     work: Work,
 ) -> Result<BinaryBvh, Stopped> {
@@ -59,7 +59,7 @@ pub fn build<'a>(
 struct Half<'a> {
     references: &'a mut [Reference],
     extents: Extents,
-    way: Way,
+    way: SplitRule,
     /// Maximum number of primitives in a leaf.
     whole: usize,
     /// The remaining number of levels with splits other than at the median.
@@ -84,9 +84,9 @@ impl Set for Half<'_> {
         let Self { references, extents, way, whole, spare } = self;
         let axis = extents.centres.longest();
         let at = match way {
-            Way::Midpoint => Some(middle(&extents, axis)),
-            Way::Mean => Some(mean(references, axis)),
-            Way::Median => None,
+            SplitRule::Midpoint => Some(middle(&extents, axis)),
+            SplitRule::Mean => Some(mean(references, axis)),
+            SplitRule::Median => None,
         };
         let count = references.len();
         let left = at.filter(|_| spare > 0).map(|at| partition(references, |r| r.centre_on(axis) < at));

@@ -26,7 +26,7 @@ pub use leaves::Leaves;
 pub(super) use reference::Bounds;
 
 use super::{BinaryBvh, Node};
-use halves::Way;
+use halves::SplitRule;
 use raywright_base::math::{Aabb, Vec3};
 use raywright_base::work::{Stopped, Work};
 use std::borrow::Cow;
@@ -74,7 +74,7 @@ pub enum Builder {
         radius: usize,
     },
     /// Splits without a cost model: [`halves`].
-    Halves(Way),
+    Halves(SplitRule),
 }
 
 impl Builder {

@@ -18,11 +18,11 @@ pub enum Subtree {
         order: Vec<u32>,
     },
     /// Two parts as siblings.
-    Pair(Box<Pair>),
+    Pair(Box<SiblingPair>),
 }
 
 /// Two parts as siblings.
-pub struct Pair {
+pub struct SiblingPair {
     /// Their bounding box.
     aabb: Aabb,
     parts: [Subtree; 2],
@@ -43,7 +43,7 @@ impl Subtree {
     pub fn pair(aabb: Aabb, left: Self, right: Self) -> Self {
         let nodes = 2 + left.below() + right.below();
         let listed = left.listed() + right.listed();
-        Self::Pair(Box::new(Pair { aabb, parts: [left, right], nodes, listed }))
+        Self::Pair(Box::new(SiblingPair { aabb, parts: [left, right], nodes, listed }))
     }
 
     /// The number of nodes below its root.
@@ -90,7 +90,7 @@ impl Subtree {
                 to.order.copy_from_slice(&order);
             }
             Self::Pair(pair) => {
-                let Pair { aabb, parts: [left, right], .. } = *pair;
+                let SiblingPair { aabb, parts: [left, right], .. } = *pair;
                 let PartTarget { base, below, first, order } = to;
                 *node = Node::inner(aabb, base as u32);
                 let (children, below) = below.split_at_mut(2);

@@ -9,8 +9,8 @@
 //! Sets that are small relative to the scene are left to `binned`.
 
 use super::binned::{MAX_BINS, Task};
-use super::bins::{Side, Split};
-use super::chopped::Plane;
+use super::bins::{BinSide, Split};
+use super::chopped::ChopPlane;
 use super::part::Subtree;
 use super::reference::{Extents, Reference, median, partition, references};
 use super::top_down::{Due, TASK};
@@ -76,12 +76,12 @@ pub fn build<'a>(
     let budget = ((f64::from(budget) * count as f64) as usize).min(MOST.saturating_sub(count));
     let extents = Extents::around_many(&references);
     let steps = Due::steps(count, grow);
-    let shared = Shared { shapes, bins, leaves, overlap: OVERLAP * extents.all.half_area(), work };
+    let shared = SpatialContext { shapes, bins, leaves, overlap: OVERLAP * extents.all.half_area(), work };
     let all = SplitParts { references, extents, spare: spare(count), budget, shared: &shared };
     all.build(Due::all(count, &steps))?.assemble(Vec::new(), place)
 }
 
-struct Shared<'a, S> {
+struct SpatialContext<'a, S> {
     shapes: &'a S,
     bins: usize,
     leaves: Leaves,
@@ -97,7 +97,7 @@ struct SplitParts<'a, S> {
     spare: usize,
     /// The remaining budget of references.
     budget: usize,
-    shared: &'a Shared<'a, S>,
+    shared: &'a SpatialContext<'a, S>,
 }
 
 impl<S: Shapes> SplitParts<'_, S> {
@@ -138,7 +138,7 @@ impl<S: Shapes> SplitParts<'_, S> {
 
     /// The parameters of a build without further spatial splits, if none are possible.
     fn without_planes(&self) -> Option<Task> {
-        let Shared { bins, leaves, overlap, .. } = *self.shared;
+        let SpatialContext { bins, leaves, overlap, .. } = *self.shared;
         // The overlap of sides is at most the set's own box, also further down.
         let is_small = self.references.len() <= leaves.block || self.extents.all.half_area() <= overlap;
         let is_over = self.budget == 0 || self.spare == 0;
@@ -181,15 +181,15 @@ impl<S: Shapes> SplitParts<'_, S> {
     }
 }
 
-impl<S: Shapes> Shared<'_, S> {
+impl<S: Shapes> SpatialContext<'_, S> {
     /// The best spatial split, if it is cheaper than the best object split, given by its two sides.
     fn best_plane(
         &self,
         references: &[Reference],
         extents: &Extents,
-        whole: Option<[Side; 2]>,
+        whole: Option<[BinSide; 2]>,
         budget: usize,
-    ) -> Option<Plane> {
+    ) -> Option<ChopPlane> {
         let area = extents.all.half_area();
         let mut least = area * references.len() as f32;
         if let Some([left, right]) = whole {
@@ -199,7 +199,7 @@ impl<S: Shapes> Shared<'_, S> {
             }
             least = least.min(left.1.half_area() * left.0 as f32 + right.1.half_area() * right.0 as f32);
         }
-        let plane = Plane::best(references, &extents.all, self.bins, self.shapes, budget, self.work);
+        let plane = ChopPlane::best(references, &extents.all, self.bins, self.shapes, budget, self.work);
         plane.filter(|plane| plane.cost() < least)
     }
 }

@@ -54,11 +54,11 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work)
     let axis = |order, space| Axis { order, space };
     let axes = [axis(x, u), axis(y, v), axis(z, w)];
     let all = around(&references, axes[0].order);
-    let shared = Shared { references: &references, right: &right, leaves: *leaves };
+    let shared = SweepContext { references: &references, right: &right, leaves: *leaves };
     top_down::build(Sweep { axes, all, spare: spare(count), shared: &shared }, grow)
 }
 
-struct Shared<'a> {
+struct SweepContext<'a> {
     references: &'a [Reference],
     /// True if a primitive is on the right of the current split.
     right: &'a [AtomicBool],
@@ -79,7 +79,7 @@ struct Sweep<'a> {
     all: Bounds,
     /// The remaining number of levels with splits by area.
     spare: usize,
-    shared: &'a Shared<'a>,
+    shared: &'a SweepContext<'a>,
 }
 
 impl Set for Sweep<'_> {

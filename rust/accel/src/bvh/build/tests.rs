@@ -15,9 +15,9 @@ const ALL: [Builder; 9] = [
     Builder::Morton(morton::Bits::Thirty),
     Builder::Morton(morton::Bits::SixtyThree),
     Builder::Ploc { radius: ploc::RADIUS },
-    Builder::Halves(Way::Midpoint),
-    Builder::Halves(Way::Median),
-    Builder::Halves(Way::Mean),
+    Builder::Halves(SplitRule::Midpoint),
+    Builder::Halves(SplitRule::Median),
+    Builder::Halves(SplitRule::Mean),
 ];
 
 /// Clip primitives that fill their boxes.
@@ -166,8 +166,9 @@ fn parted_sticks_are_held_and_cost_less() {
 fn looking_everywhere_costs_no_more_than_looking_at_borders_of_bins() {
     let (_, boxes) = sticks(20_000);
     for leaves in [Leaves::for_blocks(1), Leaves::by_cost(16, 1.0, 1.0)] {
-        let [sweep, binned, median] = [Builder::Sweep, Builder::Binned { bins: Some(8) }, Builder::Halves(Way::Median)]
-            .map(|builder| sah(&builder.build(&boxes, fill(&boxes), &leaves, Work::UNWATCHED).unwrap()));
+        let [sweep, binned, median] =
+            [Builder::Sweep, Builder::Binned { bins: Some(8) }, Builder::Halves(SplitRule::Median)]
+                .map(|builder| sah(&builder.build(&boxes, fill(&boxes), &leaves, Work::UNWATCHED).unwrap()));
         assert!(sweep < binned && binned < median, "{sweep} {binned} {median}");
     }
 }
@@ -240,12 +241,12 @@ fn builds_tell_all_that_they_do_and_end_when_they_are_stopped() {
 fn halves_are_made_where_they_say() {
     // For centres 0, 1, 2, 9 the midpoint is 4.5, the mean 3, and the median separates two from two.
     let boxes = [0.0, 1.0, 2.0, 9.0].map(|x| Aabb::around([Vec3::new(x, 0.0, 0.0)]));
-    for (way, left) in [(Way::Midpoint, 2.0), (Way::Mean, 2.0), (Way::Median, 1.0)] {
+    for (way, left) in [(SplitRule::Midpoint, 2.0), (SplitRule::Mean, 2.0), (SplitRule::Median, 1.0)] {
         let bvh = halves::build(&boxes, way, &Leaves::for_blocks(1), Work::UNWATCHED).unwrap();
         assert_eq!(bvh.nodes[1].max.x, left, "{way:?}");
     }
     let boxes = [0.0, 4.0, 5.0, 7.0].map(|x| Aabb::around([Vec3::new(x, 0.0, 0.0)]));
-    for (way, left) in [(Way::Midpoint, 0.0), (Way::Mean, 0.0), (Way::Median, 4.0)] {
+    for (way, left) in [(SplitRule::Midpoint, 0.0), (SplitRule::Mean, 0.0), (SplitRule::Median, 4.0)] {
         let bvh = halves::build(&boxes, way, &Leaves::for_blocks(1), Work::UNWATCHED).unwrap();
         assert_eq!(bvh.nodes[1].max.x, left, "{way:?}");
     }

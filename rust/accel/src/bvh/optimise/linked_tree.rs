@@ -8,7 +8,7 @@ use raywright_base::parallel;
 /// A tree with parent links. Its leaves stand for whole subtrees of the original tree.
 ///
 /// Node 0 is the root; pairs of siblings fill the rest in any order.
-pub struct Tree {
+pub struct LinkedTree {
     boxes: Vec<Bounds>,
     /// Half the surface area of every box.
     areas: Vec<f32>,
@@ -86,7 +86,7 @@ pub fn sibling(node: u32) -> u32 {
     ((node - 1) ^ 1) + 1
 }
 
-impl Tree {
+impl LinkedTree {
     /// Create a tree whose leaves are the largest subtrees of at most `block` primitives. `bvh` is not empty.
     pub fn new(bvh: &BinaryBvh, block: u32) -> Self {
         // Blocks are rarely full.

@@ -12,7 +12,7 @@
 //! better place is skipped for some rounds, so that smaller nodes get their turn. And a search visits a bounded number
 //! of nodes, which bounds the time on any input.
 
-use super::linked_tree::{Move, Tree, sibling};
+use super::linked_tree::{LinkedTree, Move, sibling};
 use crate::bvh::BinaryBvh;
 use crate::bvh::build::Bounds;
 use raywright_base::parallel;
@@ -49,7 +49,7 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
         return Ok(());
     }
     let [open, improve, place] = work.parts([1.0, options.rounds as f32, 1.5]);
-    let mut tree = Tree::new(bvh, options.block as u32);
+    let mut tree = LinkedTree::new(bvh, options.block as u32);
     // Traversal stacks are sized by the depth, and a tree of least cost may be a chain.
     let deepest = tree.height().max(3 * bvh.order.len().ilog2() + 42);
     let worthwhile = f64::from(options.worthwhile) * tree.cost();
@@ -60,12 +60,13 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
     let steps = improve.steps(options.rounds as usize);
     for round in 0..options.rounds {
         let seekers = largest(&tree, batch, |node| rests_until[node as usize] <= round);
-        let seek = |some: Range<usize>| -> Vec<Found> {
+        let seek = |some: Range<usize>| -> Vec<BetterPlace> {
             let mut open = Vec::new();
             let seekers = seekers[some].iter().take_while(|_| !steps.is_stopped());
             seekers.filter_map(|&node| best_place(&tree, node, &mut open)).collect()
         };
-        let mut found: Vec<Found> = parallel::map_chunks(seekers.len(), TOGETHER, seek).into_iter().flatten().collect();
+        let mut found: Vec<BetterPlace> =
+            parallel::map_chunks(seekers.len(), TOGETHER, seek).into_iter().flatten().collect();
         steps.did(1)?;
         seekers.iter().for_each(|&node| rests_until[node as usize] = round + REST);
         found.iter().for_each(|found| rests_until[found.step.node as usize] = 0);
@@ -89,7 +90,7 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
 }
 
 /// About `count` of the largest nodes that satisfy `is_asked`, by index, without the root.
-fn largest(tree: &Tree, count: usize, is_asked: impl Fn(u32) -> bool) -> Vec<u32> {
+fn largest(tree: &LinkedTree, count: usize, is_asked: impl Fn(u32) -> bool) -> Vec<u32> {
     let nodes = || (0..).zip(tree.areas()).skip(1).filter(|&(node, _)| is_asked(node));
     // The area threshold is estimated from a sample.
     let stride = (tree.len() >> 12).max(1);
@@ -100,14 +101,14 @@ fn largest(tree: &Tree, count: usize, is_asked: impl Fn(u32) -> bool) -> Vec<u32
 }
 
 /// A better place for a subtree.
-struct Found {
+struct BetterPlace {
     step: Move,
     /// The saved area.
     saved: f32,
 }
 
 /// The best place for a subtree, if it is better than the current one.
-fn best_place(tree: &Tree, node: u32, open: &mut Vec<InsertionPair>) -> Option<Found> {
+fn best_place(tree: &LinkedTree, node: u32, open: &mut Vec<InsertionPair>) -> Option<BetterPlace> {
     let bounds = *tree.bounds(node);
     let mut beside = sibling(node);
     let mut pivot = tree.parent(node);
@@ -134,12 +135,12 @@ fn best_place(tree: &Tree, node: u32, open: &mut Vec<InsertionPair>) -> Option<F
         saved += before - rest.half_area();
         search.offer(pivot, saved - before);
     }
-    (search.to != node).then_some(Found { step: Move { node, to: search.to }, saved: search.best })
+    (search.to != node).then_some(BetterPlace { step: Move { node, to: search.to }, saved: search.best })
 }
 
 /// A branch and bound search for a place.
 struct ReinsertionSearch<'a> {
-    tree: &'a Tree,
+    tree: &'a LinkedTree,
     /// The box of the subtree.
     bounds: Bounds,
     /// Its area.

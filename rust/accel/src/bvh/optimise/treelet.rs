@@ -7,7 +7,7 @@
 //!
 //! Subtrees that fit one block of triangles are leaves here and stay unchanged.
 
-use super::linked_tree::{Tree, Treelet};
+use super::linked_tree::{LinkedTree, Treelet};
 use crate::bvh::BinaryBvh;
 use crate::bvh::build::Bounds;
 use raywright_base::parallel;
@@ -36,7 +36,7 @@ pub fn optimise(bvh: &mut BinaryBvh, options: &Options, work: Work) -> Result<()
     }
     // Each round considers half as many nodes as the one before.
     let steps = work.steps(2 * bvh.order.len());
-    let mut tree = Tree::new(bvh, options.block as u32);
+    let mut tree = LinkedTree::new(bvh, options.block as u32);
     // Traversal stacks are sized by the depth, and a tree of least cost may be a chain.
     let deepest = tree.height().max(3 * bvh.order.len().ilog2() + 42);
     let worthwhile = f64::from(options.worthwhile) * tree.cost();
@@ -83,7 +83,7 @@ struct NodeSnapshot {
 }
 
 /// The inner nodes by depth.
-fn levels(tree: &Tree) -> Vec<Vec<NodeSnapshot>> {
+fn levels(tree: &LinkedTree) -> Vec<Vec<NodeSnapshot>> {
     let has_children = |node: &u32| tree.below(*node).is_some();
     let mut levels: Vec<Vec<u32>> = vec![[0].into_iter().filter(has_children).collect()];
     while let Some(level) = levels.last().filter(|level| !level.is_empty()) {
@@ -103,7 +103,7 @@ fn levels(tree: &Tree) -> Vec<Vec<NodeSnapshot>> {
 
 /// The best topology of the treelet at a node and the saved area; None if nothing is saved or its height exceeds the
 /// limit.
-fn best(tree: &Tree, root: u32, highest: u32) -> Option<(Treelet, f64)> {
+fn best(tree: &LinkedTree, root: u32, highest: u32) -> Option<(Treelet, f64)> {
     let first = tree.below(root)?;
     let mut leaves = Vec::with_capacity(LEAVES);
     let mut pairs = Vec::with_capacity(LEAVES - 1);
@@ -130,7 +130,7 @@ fn best(tree: &Tree, root: u32, highest: u32) -> Option<(Treelet, f64)> {
 }
 
 /// For every set of leaves, the left subset of its topology of least area; and that area for the full set.
-fn divided(tree: &Tree, leaves: &[u32]) -> ([u8; 1 << LEAVES], f64) {
+fn divided(tree: &LinkedTree, leaves: &[u32]) -> ([u8; 1 << LEAVES], f64) {
     let sets = 1usize << leaves.len();
     let mut bounds = [Bounds::EMPTY; 1 << LEAVES];
     let (mut cost, mut left) = ([0f64; 1 << LEAVES], [0; 1 << LEAVES]);
@@ -158,7 +158,7 @@ fn divided(tree: &Tree, leaves: &[u32]) -> ([u8; 1 << LEAVES], f64) {
 }
 
 /// The height of a set of leaves in a treelet.
-fn height(tree: &Tree, treelet: &Treelet, set: u8) -> u32 {
+fn height(tree: &LinkedTree, treelet: &Treelet, set: u8) -> u32 {
     if set.is_power_of_two() {
         return tree.height_of(treelet.leaves[set.trailing_zeros() as usize]);
     }

@@ -3,7 +3,7 @@
 //! in the tree.
 
 use super::numbered::Numbered;
-use super::volumes::Volumes;
+use super::volumes::NodeVolumes;
 use crate::SlabRay;
 use crate::bvh::BinaryBvh;
 use crate::walk::Walker;
@@ -22,7 +22,7 @@ pub fn larger_first(bvh: &mut BinaryBvh) {
 }
 
 /// A traversal with a stack, in the order of storage.
-pub struct Unordered<'a, V: Volumes> {
+pub struct Unordered<'a, V: NodeVolumes> {
     tree: &'a Numbered,
     volumes: &'a V,
     ray: SlabRay,
@@ -31,7 +31,7 @@ pub struct Unordered<'a, V: Volumes> {
     stack: Vec<u32>,
 }
 
-impl<'a, V: Volumes> Unordered<'a, V> {
+impl<'a, V: NodeVolumes> Unordered<'a, V> {
     /// Create a traversal.
     pub fn new(tree: &'a Numbered, volumes: &'a V) -> Self {
         let ray = SlabRay::EVERYWHERE;
@@ -39,7 +39,7 @@ impl<'a, V: Volumes> Unordered<'a, V> {
     }
 }
 
-impl<V: Volumes> Walker for Unordered<'_, V> {
+impl<V: NodeVolumes> Walker for Unordered<'_, V> {
     fn start(&mut self, ray: &SlabRay) {
         self.ray = *ray;
         self.ready = V::ready(ray);

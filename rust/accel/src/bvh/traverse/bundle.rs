@@ -13,7 +13,7 @@
 //!
 //! Incoherent rays have long and mostly empty ranges: the results are correct, but slow.
 
-use super::columns::{Columns, First};
+use super::columns::{Columns, NearPlane};
 use super::numbered::Numbered;
 use crate::SlabRay;
 use crate::bvh::Node;
@@ -201,7 +201,7 @@ struct Interval {
     inverse: [[f32; 2]; 3],
     t_min: f32,
     /// An axis along which the rays' signs differ is ignored.
-    first: [First; 3],
+    first: [NearPlane; 3],
 }
 
 impl Interval {
@@ -211,7 +211,7 @@ impl Interval {
         far: [0.0; 3],
         inverse: [[1.0; 2]; 3],
         t_min: f32::NEG_INFINITY,
-        first: [First::Mixed; 3],
+        first: [NearPlane::Mixed; 3],
     };
 
     fn of(rays: &[SlabRay], columns: &Columns<WIDTH>) -> Self {
@@ -221,7 +221,7 @@ impl Interval {
         }
         for axis in 0..3 {
             around.first[axis] = columns.first(axis);
-            let towards = if around.first[axis] == First::All(1) { -1.0 } else { 1.0 };
+            let towards = if around.first[axis] == NearPlane::All(1) { -1.0 } else { 1.0 };
             let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
             let (mut least, mut greatest) = (f32::INFINITY, 0.0);
             for ray in rays {
@@ -244,7 +244,7 @@ impl Interval {
         let planes = [node.min.to_array(), node.max.to_array()];
         let (mut enter, mut leave) = (self.t_min, last);
         for axis in 0..3 {
-            let First::All(first) = self.first[axis] else { continue };
+            let NearPlane::All(first) = self.first[axis] else { continue };
             let [least, greatest] = self.inverse[axis];
             let near = planes[first & 1][axis] - self.near[axis];
             let far = planes[first & 1 ^ 1][axis] - self.far[axis];

@@ -6,7 +6,7 @@ use raywright_base::simd::Simd;
 
 /// The near plane of the rays along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum First {
+pub enum NearPlane {
     /// The same for all: 0 the lower, 1 the upper.
     All(usize),
     /// Different planes.
@@ -21,7 +21,7 @@ pub struct Columns<const R: usize> {
     near: [[f32; R]; 3],
     far: [[f32; R]; 3],
     t_min: [f32; R],
-    first: [First; 3],
+    first: [NearPlane; 3],
 }
 
 impl<const R: usize> Columns<R> {
@@ -31,7 +31,7 @@ impl<const R: usize> Columns<R> {
         near: [[0.0; R]; 3],
         far: [[0.0; R]; 3],
         t_min: [0.0; R],
-        first: [First::Mixed; 3],
+        first: [NearPlane::Mixed; 3],
     };
 
     /// Load rays, at least one and at most `R`.
@@ -47,7 +47,7 @@ impl<const R: usize> Columns<R> {
         for axis in 0..3 {
             let first = rays[0].first[axis];
             let same = rays.iter().all(|ray| ray.first[axis] == first);
-            self.first[axis] = if same { First::All(first) } else { First::Mixed };
+            self.first[axis] = if same { NearPlane::All(first) } else { NearPlane::Mixed };
         }
     }
 
@@ -57,7 +57,7 @@ impl<const R: usize> Columns<R> {
     }
 
     /// The near plane along an axis.
-    pub fn first(&self, axis: usize) -> First {
+    pub fn first(&self, axis: usize) -> NearPlane {
         self.first[axis]
     }
 
@@ -82,10 +82,10 @@ impl<const R: usize> Columns<R> {
             let far = part(simd, &self.far[axis], group);
             let plane = |which: usize| simd.splat(planes[which][axis]);
             let (first, last) = match self.first[axis] {
-                First::All(first) => {
+                NearPlane::All(first) => {
                     (simd.mul_add(plane(first & 1), inverse, near), simd.mul_add(plane(first & 1 ^ 1), inverse, far))
                 }
-                First::Mixed => {
+                NearPlane::Mixed => {
                     let (a, b) = (simd.mul(plane(0), inverse), simd.mul(plane(1), inverse));
                     (simd.add(simd.min(a, b), near), simd.add(simd.max(a, b), far))
                 }

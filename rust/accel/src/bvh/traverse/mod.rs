@@ -17,7 +17,7 @@ pub(crate) use any::larger_first;
 pub(super) use moving::Moving;
 pub(crate) use numbered::Numbered;
 use ordered::Ordered;
-pub use ordered::Rays;
+pub use ordered::PacketSize;
 pub use threaded::{Orders, Threaded};
 
 use super::contents::Contents;
@@ -35,7 +35,7 @@ const BLOCK: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Traversal {
     /// With a stack.
-    Stack(Rays),
+    Stack(PacketSize),
     /// With a stack and single rays, and oriented boxes at the nodes.
     Oriented,
     /// The same with slabs along diagonals.
@@ -47,9 +47,9 @@ pub enum Traversal {
 impl Traversal {
     /// All algorithms.
     pub const ALL: [Self; 7] = [
-        Self::Stack(Rays::One),
-        Self::Stack(Rays::Four),
-        Self::Stack(Rays::SixtyFour),
+        Self::Stack(PacketSize::One),
+        Self::Stack(PacketSize::Four),
+        Self::Stack(PacketSize::SixtyFour),
         Self::Oriented,
         Self::Slabs,
         Self::Threaded(Orders::Six),

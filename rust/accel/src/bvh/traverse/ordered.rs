@@ -4,7 +4,7 @@
 
 use super::any::{Unordered, larger_first};
 use super::numbered::Numbered;
-use super::volumes::{Alone, Points, Volumes};
+use super::volumes::{NoVolumes, NodeVolumes, Points};
 use super::{bundle, packets};
 use crate::bvh::BinaryBvh;
 use crate::walk::{Built, Input, Lists, Structure, Together, Walker};
@@ -13,7 +13,7 @@ use raywright_base::simd::Level;
 
 /// The number of rays traversed together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rays {
+pub enum PacketSize {
     /// Single rays.
     One,
     /// Packets of 4, one vector.
@@ -23,35 +23,35 @@ pub enum Rays {
 }
 
 /// A binary tree traversed with a stack, by single rays or packets.
-pub struct Ordered<V = Alone> {
+pub struct Ordered<V = NoVolumes> {
     tree: Numbered,
     /// Additional bounding volumes of the nodes.
     volumes: V,
-    rays: Rays,
+    rays: PacketSize,
     kind: String,
 }
 
 impl Ordered {
     /// Create the structure; `kind` describes the build.
-    pub fn over(mut bvh: BinaryBvh, rays: Rays, kind: &str) -> Built {
+    pub fn over(mut bvh: BinaryBvh, rays: PacketSize, kind: &str) -> Built {
         larger_first(&mut bvh);
         let (tree, lists) = Numbered::new(bvh);
         let name = match rays {
-            Rays::One => "stack",
-            Rays::Four => "packets of 4",
-            Rays::SixtyFour => "packets of 64",
+            PacketSize::One => "stack",
+            PacketSize::Four => "packets of 4",
+            PacketSize::SixtyFour => "packets of 64",
         };
-        (Box::new(Self { tree, volumes: Alone, rays, kind: format!("BVH, {kind}, {name}") }), lists)
+        (Box::new(Self { tree, volumes: NoVolumes, rays, kind: format!("BVH, {kind}, {name}") }), lists)
     }
 }
 
-impl<V: Volumes> Ordered<V> {
+impl<V: NodeVolumes> Ordered<V> {
     /// Create the structure with additional bounding volumes, for single rays.
     pub(super) fn within(mut bvh: BinaryBvh, input: &Input, kind: &str) -> Built {
         larger_first(&mut bvh);
         let (tree, lists) = Numbered::new(bvh);
         let volumes = V::around(&tree, &Points::new(input, &lists));
-        (Box::new(Self { tree, volumes, rays: Rays::One, kind: format!("BVH, {kind}, stack{}", V::NAME) }), lists)
+        (Box::new(Self { tree, volumes, rays: PacketSize::One, kind: format!("BVH, {kind}, stack{}", V::NAME) }), lists)
     }
 
     fn lists(&self, primitives: &dyn Fn(u32) -> Vec<u32>) -> Lists {
@@ -61,7 +61,7 @@ impl<V: Volumes> Ordered<V> {
     }
 }
 
-impl<V: Volumes> Structure for Ordered<V> {
+impl<V: NodeVolumes> Structure for Ordered<V> {
     fn walker(&self, counted: bool) -> Box<dyn Walker + '_> {
         if counted {
             Box::new(OrderedTraversal::<V, true>::new(self))
@@ -76,9 +76,9 @@ impl<V: Volumes> Structure for Ordered<V> {
 
     fn together(&self, counted: bool, level: Level) -> Option<Box<dyn Together + '_>> {
         match self.rays {
-            Rays::One => None,
-            Rays::Four => Some(packets::walk(&self.tree, counted, level)),
-            Rays::SixtyFour => Some(bundle::walk(&self.tree, counted, level)),
+            PacketSize::One => None,
+            PacketSize::Four => Some(packets::walk(&self.tree, counted, level)),
+            PacketSize::SixtyFour => Some(bundle::walk(&self.tree, counted, level)),
         }
     }
 
@@ -109,7 +109,7 @@ impl<V: Volumes> Structure for Ordered<V> {
     }
 }
 
-struct OrderedTraversal<'a, V: Volumes, const COUNTED: bool> {
+struct OrderedTraversal<'a, V: NodeVolumes, const COUNTED: bool> {
     tree: &'a Numbered,
     volumes: &'a V,
     ray: SlabRay,
@@ -119,7 +119,7 @@ struct OrderedTraversal<'a, V: Volumes, const COUNTED: bool> {
     nodes: u32,
 }
 
-impl<'a, V: Volumes, const COUNTED: bool> OrderedTraversal<'a, V, COUNTED> {
+impl<'a, V: NodeVolumes, const COUNTED: bool> OrderedTraversal<'a, V, COUNTED> {
     fn new(of: &'a Ordered<V>) -> Self {
         let ray = SlabRay::EVERYWHERE;
         // A path leaves one sibling per level.
@@ -128,7 +128,7 @@ impl<'a, V: Volumes, const COUNTED: bool> OrderedTraversal<'a, V, COUNTED> {
     }
 }
 
-impl<V: Volumes, const COUNTED: bool> Walker for OrderedTraversal<'_, V, COUNTED> {
+impl<V: NodeVolumes, const COUNTED: bool> Walker for OrderedTraversal<'_, V, COUNTED> {
     fn start(&mut self, ray: &SlabRay) {
         self.ray = *ray;
         self.ready = V::ready(ray);

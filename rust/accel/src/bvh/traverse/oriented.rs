@@ -2,7 +2,7 @@
 //! (Gottschalk, Lin and Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
 
 use super::numbered::Numbered;
-use super::volumes::{Line, NOWHERE, Points, Span, Volumes, grow};
+use super::volumes::{NOWHERE, NodeVolumes, ObliqueRay, Points, Span, grow};
 use crate::SlabRay;
 use raywright_base::math::{DVec3, Vec3};
 use raywright_base::parallel;
@@ -45,9 +45,9 @@ impl Oriented {
     const NONE: u32 = u32::MAX;
 }
 
-impl Volumes for Oriented {
+impl NodeVolumes for Oriented {
     const NAME: &'static str = " in turned boxes";
-    type Ready = Line;
+    type Ready = ObliqueRay;
 
     fn around(tree: &Numbered, points: &Points) -> Self {
         let turned = parallel::map(tree.nodes.len(), |i| {
@@ -65,12 +65,12 @@ impl Volumes for Oriented {
     }
 
     #[inline(always)]
-    fn ready(ray: &SlabRay) -> Line {
-        Line::new(ray)
+    fn ready(ray: &SlabRay) -> ObliqueRay {
+        ObliqueRay::new(ray)
     }
 
     #[inline(always)]
-    fn narrowed(&self, node: u32, ray: &Line, mut within: (f32, f32)) -> Option<(f32, f32)> {
+    fn narrowed(&self, node: u32, ray: &ObliqueRay, mut within: (f32, f32)) -> Option<(f32, f32)> {
         let Some(turned) = self.boxes.get(self.which[node as usize] as usize) else { return Some(within) };
         for (&axis, &span) in turned.axes.iter().zip(&turned.spans) {
             within = ray.across(axis).narrowed(span, within);

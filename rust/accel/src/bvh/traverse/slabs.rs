@@ -2,7 +2,7 @@
 //! edge midpoints and corners (Kay and Kajiya, "Ray tracing complex scenes", 1986).
 
 use super::numbered::Numbered;
-use super::volumes::{Across, Line, NOWHERE, Points, Span, Volumes, grow};
+use super::volumes::{Across, NOWHERE, NodeVolumes, ObliqueRay, Points, Span, grow};
 use crate::SlabRay;
 use raywright_base::math::DVec3;
 use raywright_shapes::oriented_box::DIRECTIONS;
@@ -17,7 +17,7 @@ fn normal(i: usize) -> DVec3 {
 /// The height intervals of all nodes.
 pub struct Slabs(Vec<[Span; COUNT]>);
 
-impl Volumes for Slabs {
+impl NodeVolumes for Slabs {
     const NAME: &'static str = " in 13 slabs";
     type Ready = [Across; COUNT];
 
@@ -41,7 +41,7 @@ impl Volumes for Slabs {
 
     #[inline(always)]
     fn ready(ray: &SlabRay) -> [Across; COUNT] {
-        let line = Line::new(ray);
+        let line = ObliqueRay::new(ray);
         std::array::from_fn(|k| line.across(normal(k).as_vec3()))
     }
 

@@ -16,7 +16,7 @@ use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{DVec3, Vec3};
 
 /// The volumes of all nodes of a tree.
-pub trait Volumes: Sized + Send + Sync + 'static {
+pub trait NodeVolumes: Sized + Send + Sync + 'static {
     /// Their display name; empty without volumes.
     const NAME: &'static str;
 
@@ -40,9 +40,9 @@ pub trait Volumes: Sized + Send + Sync + 'static {
 }
 
 /// Boxes alone.
-pub struct Alone;
+pub struct NoVolumes;
 
-impl Volumes for Alone {
+impl NodeVolumes for NoVolumes {
     const NAME: &'static str = "";
     type Ready = ();
 
@@ -131,7 +131,7 @@ pub const NOWHERE: Span = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// A ray prepared for directions other than the axes.
 #[derive(Clone, Copy)]
-pub struct Line {
+pub struct ObliqueRay {
     origin: Vec3,
     direction: Vec3,
     pad: f32,
@@ -140,7 +140,7 @@ pub struct Line {
 /// Minimum rate of change of the height: across a scene, its effect is negligible relative to the pad.
 const SMALLEST: f32 = 1.0 / (1u64 << 60) as f32;
 
-impl Line {
+impl ObliqueRay {
     /// Convert from a ray prepared for boxes.
     #[inline(always)]
     pub fn new(ray: &SlabRay) -> Self {

@@ -1,7 +1,7 @@
 //! Spatial middle and object median splits of kd-trees, without a cost model.
 
 use super::{Builder, Grown, Node, Options, PARALLEL, is_stopped, told};
-use crate::walk::{Halves, Input, Part, Plane, Room};
+use crate::walk::{BuildBudget, Input, PartPosition, PrimitivePart, SplitPlane};
 use raywright_base::math::Aabb;
 use raywright_base::work::Steps;
 
@@ -15,11 +15,11 @@ pub struct Halving<'a> {
 }
 
 /// The parts on each side of a plane, and their budgets.
-type SplitSides = ([Vec<Part>; 2], [Room; 2]);
+type SplitSides = ([Vec<PrimitivePart>; 2], [BuildBudget; 2]);
 
 impl Halving<'_> {
     /// Build the subtree of a cell; return its node.
-    pub fn grow(self, parts: Vec<Part>, cell: Aabb, room: Room, grown: &mut Grown) -> Node {
+    pub fn grow(self, parts: Vec<PrimitivePart>, cell: Aabb, room: BuildBudget, grown: &mut Grown) -> Node {
         if is_stopped(self.steps, parts.len()) {
             return Node::EMPTY;
         }
@@ -32,7 +32,7 @@ impl Halving<'_> {
         let many = parts.len() > PARALLEL;
         drop(parts);
         let [below_cell, above_cell] = plane.cut(&cell);
-        let child = |parts: Vec<Part>, cell, room, grown: &mut Grown| {
+        let child = |parts: Vec<PrimitivePart>, cell, room, grown: &mut Grown| {
             let count = parts.len();
             let node = self.grow(parts, cell, room, grown);
             told(self.steps, count, room, many);
@@ -47,7 +47,7 @@ impl Halving<'_> {
     }
 
     /// The axes in the order of preference.
-    fn axes(self, cell: &Aabb, room: Room) -> [usize; 3] {
+    fn axes(self, cell: &Aabb, room: BuildBudget) -> [usize; 3] {
         let size = cell.max - cell.min;
         match self.builder {
             // The remaining depth decreases with each level, so the axes cycle.
@@ -61,7 +61,7 @@ impl Halving<'_> {
     }
 
     /// The plane across an axis, if it is strictly inside the cell.
-    fn plane(self, parts: &[Part], cell: &Aabb, axis: usize) -> Option<Plane> {
+    fn plane(self, parts: &[PrimitivePart], cell: &Aabb, axis: usize) -> Option<SplitPlane> {
         let at = match self.builder {
             Builder::Middle => 0.5 * (cell.min[axis] + cell.max[axis]),
             _ => {
@@ -70,25 +70,25 @@ impl Halving<'_> {
                 *centres.select_nth_unstable_by(middle, f32::total_cmp).1
             }
         };
-        let plane = Plane { axis, at };
+        let plane = SplitPlane { axis, at };
         plane.is_within(cell).then_some(plane)
     }
 
     /// Distribute the parts to both sides; None if that is no improvement, as for coincident primitives.
-    fn parted(self, parts: &[Part], plane: Plane, room: Room) -> Option<SplitSides> {
+    fn parted(self, parts: &[PrimitivePart], plane: SplitPlane, room: BuildBudget) -> Option<SplitSides> {
         let mut sides = [Vec::new(), Vec::new()];
         for part in parts {
             match part.halves(self.input, plane) {
-                Halves::Below => sides[0].push(*part),
-                Halves::Above => sides[1].push(*part),
-                Halves::Within => {
+                PartPosition::Below => sides[0].push(*part),
+                PartPosition::Above => sides[1].push(*part),
+                PartPosition::Within => {
                     let fewer = usize::from(sides[1].len() < sides[0].len());
                     sides[fewer].push(*part);
                 }
-                Halves::Both(halves) => {
+                PartPosition::Both(halves) => {
                     for (side, aabb) in sides.iter_mut().zip(halves) {
                         if !aabb.is_empty() {
-                            side.push(Part { aabb, ..*part });
+                            side.push(PrimitivePart { aabb, ..*part });
                         }
                     }
                 }

@@ -4,7 +4,7 @@ mod halves;
 mod sah;
 
 use super::{MAX_DEPTH, Node, Traversal};
-use crate::walk::{Input, Lists, Part, Room};
+use crate::walk::{BuildBudget, Input, Lists, PrimitivePart};
 use raywright_base::math::Aabb;
 use raywright_base::parallel;
 use raywright_base::work::Steps;
@@ -97,7 +97,7 @@ impl Default for Options {
 const PARALLEL: usize = 4096;
 
 /// Report the progress of a subtree, if one thread built all of it.
-fn told(steps: &Steps, parts: usize, room: Room, is_all: bool) {
+fn told(steps: &Steps, parts: usize, room: BuildBudget, is_all: bool) {
     if is_all && parts <= PARALLEL {
         // Cancellation is checked before nodes are created.
         let _ = steps.did(room.steps());
@@ -118,11 +118,11 @@ pub fn build(input: &Input, options: &Options) -> (Vec<Node>, Lists, Aabb) {
     if count == 0 {
         return (Vec::new(), Lists::default(), bounds);
     }
-    let depth = options.max_depth.unwrap_or_else(|| Room::depth_for(count).min(MAX_DEPTH));
-    let room = Room::new(count, depth);
+    let depth = options.max_depth.unwrap_or_else(|| BuildBudget::depth_for(count).min(MAX_DEPTH));
+    let room = BuildBudget::new(count, depth);
     // The root and an unused node, so that all pairs of children start at even indices.
     let mut grown = Grown { nodes: vec![Node::EMPTY; 2], lists: Lists::default() };
-    let steps = input.work.steps(Room::STEPS);
+    let steps = input.work.steps(BuildBudget::STEPS);
     grown.nodes[0] = match options.builder {
         Builder::Sah => sah::grow(input, options, parts, bounds, room, &mut grown),
         other => {
@@ -142,7 +142,7 @@ struct Grown {
 
 impl Grown {
     /// Create a leaf.
-    fn leaf(&mut self, parts: &[Part]) -> Node {
+    fn leaf(&mut self, parts: &[PrimitivePart]) -> Node {
         if parts.is_empty() {
             return Node::EMPTY;
         }

@@ -3,7 +3,7 @@
 
 use super::super::area;
 use super::{Grown, Node, Options, PARALLEL, is_stopped, told};
-use crate::walk::{Halves, Input, Part, Plane, Room};
+use crate::walk::{BuildBudget, Input, PartPosition, PrimitivePart, SplitPlane};
 use raywright_base::math::Aabb;
 use raywright_base::parallel::{self, CHUNK};
 use raywright_base::work::Steps;
@@ -30,7 +30,7 @@ impl Event {
     }
 
     /// The events of a part in order; the second is None for a flat part.
-    fn of(part: &Part, number: usize, axis: usize) -> [Option<Self>; 2] {
+    fn of(part: &PrimitivePart, number: usize, axis: usize) -> [Option<Self>; 2] {
         let (least, greatest) = (part.aabb.min[axis], part.aabb.max[axis]);
         if least == greatest {
             [Some(Self::new(least, FLAT, number)), None]
@@ -66,24 +66,31 @@ impl Event {
 #[derive(Clone, Copy, Debug)]
 struct SahSplit {
     cost: f64,
-    plane: Plane,
+    plane: SplitPlane,
     flat: usize,
 }
 
 /// The content of a cell.
 struct Set {
-    parts: Vec<Part>,
+    parts: Vec<PrimitivePart>,
     /// Sorted events by axis.
     events: [Vec<Event>; 3],
     cell: Aabb,
-    room: Room,
+    room: BuildBudget,
 }
 
 /// Marks parts that are not on a side, or that are cut.
 const GONE: u32 = u32::MAX;
 
 /// Build the subtree of a cell; return its node.
-pub fn grow(input: &Input, options: &Options, parts: Vec<Part>, cell: Aabb, room: Room, grown: &mut Grown) -> Node {
+pub fn grow(
+    input: &Input,
+    options: &Options,
+    parts: Vec<PrimitivePart>,
+    cell: Aabb,
+    room: BuildBudget,
+    grown: &mut Grown,
+) -> Node {
     let sorted = |axis: usize| {
         let ends = |i: usize| Event::of(&parts[i], i, axis).into_iter().flatten().map(|event| event.0);
         let ends = |range: Range<usize>| range.flat_map(ends).collect::<Vec<_>>();
@@ -99,7 +106,7 @@ pub fn grow(input: &Input, options: &Options, parts: Vec<Part>, cell: Aabb, room
             return Node::EMPTY;
         }
     }
-    SahBuilder { input, options, steps: &grow.steps(Room::STEPS) }.grow(Set { parts, events, cell, room }, grown)
+    SahBuilder { input, options, steps: &grow.steps(BuildBudget::STEPS) }.grow(Set { parts, events, cell, room }, grown)
 }
 
 #[derive(Clone, Copy)]
@@ -171,7 +178,7 @@ impl SahBuilder<'_> {
             rest = &rest[here..];
             let [end, flat, start] = kinds;
             above -= end + flat;
-            let plane = Plane { axis, at: first.at() };
+            let plane = SplitPlane { axis, at: first.at() };
             if plane.is_within(cell) {
                 let areas = [
                     ends + walls * (f64::from(plane.at) - f64::from(cell.min[axis])),
@@ -199,13 +206,13 @@ impl SahBuilder<'_> {
         let mut cut = [Vec::new(), Vec::new()];
         for (i, part) in set.parts.iter().enumerate() {
             let whole = match part.halves(self.input, plane) {
-                Halves::Below => 0,
-                Halves::Above => 1,
-                Halves::Within => flat,
-                Halves::Both(halves) => {
+                PartPosition::Below => 0,
+                PartPosition::Above => 1,
+                PartPosition::Within => flat,
+                PartPosition::Both(halves) => {
                     for (side, aabb) in halves.into_iter().enumerate().filter(|(_, aabb)| !aabb.is_empty()) {
                         cut[side].push(parts[side].len());
-                        parts[side].push(Part { aabb, ..*part });
+                        parts[side].push(PrimitivePart { aabb, ..*part });
                     }
                     continue;
                 }
@@ -240,7 +247,7 @@ fn dealt(
     events: &[Event],
     axis: usize,
     numbers: &[Vec<u32>; 2],
-    parts: &[Vec<Part>; 2],
+    parts: &[Vec<PrimitivePart>; 2],
     cut: &[Vec<usize>; 2],
 ) -> [Vec<Event>; 2] {
     [0, 1].map(|side| {
