@@ -6,21 +6,21 @@ use raywright::shapes::triangle::routines::badouel::Badouel;
 use raywright::shapes::triangle::routines::edge_f32::EdgeF32;
 use raywright::shapes::triangle::routines::edge_f64::EdgeF64;
 use raywright::shapes::triangle::routines::moller_trumbore::{MollerTrumbore, MollerTrumboreEdges};
-use raywright::shapes::triangle::routines::volumes::Volumes;
+use raywright::shapes::triangle::routines::volumes::SignedVolumes;
 use raywright::shapes::triangle::routines::woop::Woop;
-use raywright::shapes::triangle::routines::{Contest, Meeting, Routine, SingleRay};
+use raywright::shapes::triangle::routines::{Contest, Routine, SingleRay, TriangleHit};
 
-fn meet<R: Routine>(ray: SingleRay, corners: [Vec3; 3]) -> Option<Meeting> {
+fn meet<R: Routine>(ray: SingleRay, corners: [Vec3; 3]) -> Option<TriangleHit> {
     R::meet(&R::ray(ray, corners), &R::triangle(corners))
 }
 
-type Meet = fn(SingleRay, [Vec3; 3]) -> Option<Meeting>;
+type Meet = fn(SingleRay, [Vec3; 3]) -> Option<TriangleHit>;
 
 const ALL: [(&str, Meet); 7] = [
     (MollerTrumbore::NAME, meet::<MollerTrumbore>),
     (MollerTrumboreEdges::NAME, meet::<MollerTrumboreEdges>),
     (Badouel::NAME, meet::<Badouel>),
-    (Volumes::NAME, meet::<Volumes>),
+    (SignedVolumes::NAME, meet::<SignedVolumes>),
     (Woop::NAME, meet::<Woop>),
     (EdgeF32::NAME, meet::<EdgeF32>),
     (EdgeF64::NAME, meet::<EdgeF64>),
@@ -60,7 +60,7 @@ proptest! {
         let scale = 2f32.powi(exponent);
         let scaled = SingleRay { origin: ray.origin * scale, ..ray };
         for (name, meet) in ALL {
-            let once = meet(ray, corners).map(|m| Meeting { t: m.t * f64::from(scale), ..m });
+            let once = meet(ray, corners).map(|m| TriangleHit { t: m.t * f64::from(scale), ..m });
             prop_assert_eq!(meet(scaled, corners.map(|c| c * scale)), once, "{}", name);
         }
     }
@@ -139,7 +139,7 @@ fn numbers_that_need_no_rounding_give_the_closed_form() {
     let ray = SingleRay { origin: Vec3::new(1.0, 1.0, 8.0), direction: Vec3::new(0.0, 0.5, -2.0) };
     for (name, meet) in ALL {
         // At (1, 3, 0), on the far edge.
-        assert_eq!(meet(ray, CORNERS), Some(Meeting { t: 4.0, u: 0.25, v: 0.75 }), "{name}");
+        assert_eq!(meet(ray, CORNERS), Some(TriangleHit { t: 4.0, u: 0.25, v: 0.75 }), "{name}");
     }
 }
 

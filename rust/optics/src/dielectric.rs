@@ -11,7 +11,7 @@ use super::losses::{Lossy, LostBetween};
 use super::mirror::mirrored;
 use super::split::{Bare, Share, Split, beyond};
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
-use facet::{Bent, Divided, Facet};
+use facet::{Bent, Divided, Microfacet};
 use raywright_base::math::{DVec3, in_lanes, select};
 
 /// A dielectric interface, smooth or with isotropic microfacets, that reflects and refracts (Walter et al., "Microfacet
@@ -187,7 +187,13 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// Value and density between two mutually visible directions: single scattering by one facet, plus compensation.
     /// The value includes the cosine and is for radiance.
     #[inline]
-    fn scattered(&self, rough: &Rough<F>, known: &FacetTerms, [wo, wi]: [DVec3; 2], facet: &Facet) -> (S::Share, f64) {
+    fn scattered(
+        &self,
+        rough: &Rough<F>,
+        known: &FacetTerms,
+        [wo, wi]: [DVec3; 2],
+        facet: &Microfacet,
+    ) -> (S::Share, f64) {
         let (eta, divided) = (self.beyond(wo), self.divided(wo, facet.cosines[0]));
         let once = if wo.z * wi.z < 0.0 {
             facet.refracted(&rough.facets, &divided, eta, [wo, wi])
@@ -212,7 +218,7 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
         let (known, eta) = (rough.known(wo), self.beyond(wo));
         let (wi, facet, choices) = if choice < known.lost {
             let (wi, choices) = rough.give_back(&known, wo, choice, u)?;
-            (wi, Facet::between(&rough.facets, eta, [wo, wi]), choices)
+            (wi, Microfacet::between(&rough.facets, eta, [wo, wi]), choices)
         } else {
             let h = facet::seen(&rough.facets, wo, u);
             let chance = self.divided(wo, wo.dot(h)).chance;
@@ -260,7 +266,7 @@ impl<F: Lossy, S: Split> Bsdf for Dielectric<F, S> {
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> (Rgb, f64) {
         match &self.rough {
             Some(rough) if F::sees(wo) && F::sees(wi) => {
-                let facet = Facet::between(&rough.facets, self.beyond(wo), [wo, wi]);
+                let facet = Microfacet::between(&rough.facets, self.beyond(wo), [wo, wi]);
                 let (value, pdf) = self.scattered(rough, &rough.known(wo), [wo, wi], &facet);
                 (value.rgb(), pdf)
             }

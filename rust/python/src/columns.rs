@@ -5,7 +5,7 @@ use super::hit_parts::{HitParts, Rounded, To};
 use super::rays::{BATCH, RayArrays};
 use raywright::accel::ByColumns;
 use raywright::math::coherence::is_coherent;
-use raywright::math::ray_sort::{Gathering, RUN, Spread, WINDOW};
+use raywright::math::ray_sort::{Gathering, RUN, RunBounds, WINDOW};
 use raywright::math::{HitColumns, Numbers, RayColumns, Run, Tiling, Vectors};
 use raywright::scene::Geometry;
 use raywright::simd::{ask_for, columns_of_four};
@@ -142,10 +142,10 @@ fn some<T: Clone + Default>(room: &mut Vec<T>, count: usize) -> &mut [T] {
     &mut room[..count]
 }
 
-fn spread(rows: Rows<'_>) -> Spread {
+fn spread(rows: Rows<'_>) -> RunBounds {
     match rows {
-        Rows::Single(rows) => Spread::of(rows),
-        Rows::Double(rows) => Spread::of(rows),
+        Rows::Single(rows) => RunBounds::of(rows),
+        Rows::Double(rows) => RunBounds::of(rows),
     }
 }
 

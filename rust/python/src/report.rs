@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::arrays::rows;
 use raywright::math::Vec3;
-use raywright::shapes::triangle::routines::{Contest, Meeting, SingleRay};
+use raywright::shapes::triangle::routines::{Contest, SingleRay, TriangleHit};
 
 /// The triangle routines on the same ray-triangle pairs.
 #[pyclass(frozen, module = "raywright._core")]
@@ -52,7 +52,7 @@ impl KernelContest {
         py: Python<'py>,
         routine: usize,
     ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>)> {
-        const MISS: Meeting = Meeting { t: f64::INFINITY, u: 0.0, v: 0.0 };
+        const MISS: TriangleHit = TriangleHit { t: f64::INFINITY, u: 0.0, v: 0.0 };
         let contender = self.0.contenders().nth(routine).ok_or_else(|| {
             PyIndexError::new_err(format!("routine is {routine}, expected less than {}", self.0.contenders().len()))
         })?;

@@ -1,7 +1,7 @@
 //! The cone and the truncated cone.
 
 use super::Revolution;
-use super::revolution::Profile;
+use super::revolution::ProfileCurve;
 use raywright_base::math::DVec3;
 
 impl Revolution {
@@ -15,7 +15,7 @@ impl Revolution {
     /// to tip. The closed one runs from the center of the base cap over its rim and up the side to the center of the
     /// tip cap.
     pub fn cone(base: DVec3, tip: DVec3, radii: [f64; 2], capped: bool) -> Self {
-        let profile = Profile::Straight { base: radii[0], tip: radii[1] };
+        let profile = ProfileCurve::Straight { base: radii[0], tip: radii[1] };
         Self { base, tip, profile, capped }
     }
 }

@@ -1,7 +1,7 @@
 //! The finite cylinder.
 
 use super::Revolution;
-use super::revolution::Profile;
+use super::revolution::ProfileCurve;
 use raywright_base::math::DVec3;
 
 impl Revolution {
@@ -14,7 +14,7 @@ impl Revolution {
     /// to tip. The closed one runs from the center of the base cap over its rim and up the side to the center of the
     /// tip cap.
     pub fn cylinder(base: DVec3, tip: DVec3, radius: f64, capped: bool) -> Self {
-        let profile = Profile::Straight { base: radius, tip: radius };
+        let profile = ProfileCurve::Straight { base: radius, tip: radius };
         Self { base, tip, profile, capped }
     }
 }

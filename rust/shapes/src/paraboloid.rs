@@ -1,7 +1,7 @@
 //! The paraboloid of revolution.
 
 use super::Revolution;
-use super::revolution::Profile;
+use super::revolution::ProfileCurve;
 use raywright_base::math::DVec3;
 
 impl Revolution {
@@ -13,7 +13,7 @@ impl Revolution {
     /// u is the angle about the axis in turns. v is the distance from the axis as a fraction of the rim's radius. If
     /// closed, that is the first half of v, and the second half runs from the rim to the center of the cap.
     pub fn paraboloid(apex: DVec3, tip: DVec3, radius: f64, capped: bool) -> Self {
-        let profile = Profile::Parabola { tip: radius };
+        let profile = ProfileCurve::Parabola { tip: radius };
         Self { base: apex, tip, profile, capped }
     }
 }

@@ -50,14 +50,14 @@ fn firsts<T: Coordinate>(vectors: &[[T; 3]]) -> impl Iterator<Item = [f32; 3]> {
 
 /// The bounding box of the first vectors of runs.
 #[derive(Clone, Copy, Debug)]
-pub struct Spread {
+pub struct RunBounds {
     low: [f32; 3],
     size: [f32; 3],
     /// The largest absolute coordinate.
     farthest: f32,
 }
 
-impl Spread {
+impl RunBounds {
     /// Compute it, ignoring NaN.
     pub fn of<T: Coordinate>(vectors: &[[T; 3]]) -> Self {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
@@ -89,7 +89,7 @@ pub struct Gathering {
 impl Gathering {
     /// Sort the runs of vectors, at most [`WINDOW`], within a box; return the order of the runs. An incomplete last run
     /// is omitted.
-    pub fn of<T: Coordinate>(&mut self, vectors: &[[T; 3]], spread: &Spread) -> &[u16] {
+    pub fn of<T: Coordinate>(&mut self, vectors: &[[T; 3]], spread: &RunBounds) -> &[u16] {
         assert!(vectors.len() <= WINDOW, "{} vectors", vectors.len());
         // The bits of a cell, by axis and position along it.
         let mut bits = [[0u16; 1 << ALONG]; 3];
@@ -152,7 +152,7 @@ mod tests {
     }
 
     fn gathered<T: Coordinate>(vectors: &[[T; 3]]) -> Vec<u16> {
-        Gathering::default().of(vectors, &Spread::of(vectors)).to_vec()
+        Gathering::default().of(vectors, &RunBounds::of(vectors)).to_vec()
     }
 
     #[test]
@@ -163,7 +163,7 @@ mod tests {
             let strange: Vec<_> = (0..count).map(|i| [number(i), number(i + 1), number(3 * i)]).collect();
             let same = vec![[1.0f32, 2.0, 3.0]; count];
             for vectors in [strange, same, surface(1024, WINDOW / 1024)[..count].to_vec()] {
-                let mut order = gathering.of(&vectors, &Spread::of(&vectors)).to_vec();
+                let mut order = gathering.of(&vectors, &RunBounds::of(&vectors)).to_vec();
                 order.sort_unstable();
                 assert!(order.into_iter().eq((0..count / RUN).map(|run| run as u16)), "{count} vectors");
             }
@@ -193,10 +193,10 @@ mod tests {
 
     #[test]
     fn a_box_says_how_far_apart_they_are() {
-        let spread = Spread::of(&[[1.0, 2.0, 3.0], [9.0; 3], [9.0; 3], [9.0; 3], [-4.0, f64::NAN, 3.5]]);
+        let spread = RunBounds::of(&[[1.0, 2.0, 3.0], [9.0; 3], [9.0; 3], [9.0; 3], [-4.0, f64::NAN, 3.5]]);
         // Only the first of each run counts, and an incomplete run has none.
         assert_eq!((spread.over(Some(2.0)), spread.over(None)), (0.0, 0.0));
-        let spread = Spread::of(&surface(1024, 2));
+        let spread = RunBounds::of(&surface(1024, 2));
         assert_eq!((spread.over(Some(10.0)), spread.over(None)), (102.0, 1.0));
     }
 }

@@ -1,6 +1,6 @@
 //! Dielectric interfaces in batches of lanes.
 
-use super::facet::{Bent, Divided, Facet, FacetLanes, seen};
+use super::facet::{Bent, Divided, FacetLanes, Microfacet, seen};
 use super::{Dielectric, FacetTerms, KnownLanes, Rough, Single};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
 use crate::lobes::{Grazing, GrazingLanes};
@@ -114,9 +114,11 @@ loops! {
     fn meet<F: Facets>(of: &DielectricLanes<F>, wo: &VectorLanes, wi: &VectorLanes, facets: &mut FacetLanes) {
         for i in 0..LANES {
             let (directions, eta) = ([wo.get(i), wi.get(i)], beyond(of.etas[i], wo.get(i)));
-            let [mirroring, refracting] =
-                [Facet::mirroring(&of.facets(i), directions), Facet::refracting(&of.facets(i), eta, directions)];
-            Facet::select(wo.get(i).z * wi.get(i).z < 0.0, refracting, mirroring).put(facets, i);
+            let [mirroring, refracting] = [
+                Microfacet::mirroring(&of.facets(i), directions),
+                Microfacet::refracting(&of.facets(i), eta, directions),
+            ];
+            Microfacet::select(wo.get(i).z * wi.get(i).z < 0.0, refracting, mirroring).put(facets, i);
         }
     }
 }
@@ -135,7 +137,7 @@ loops! {
         pdf: &mut [f64; LANES],
     ) {
         for i in 0..LANES {
-            let (o, w, facet) = (wo.get(i), wi.get(i), Facet::get(facets, i));
+            let (o, w, facet) = (wo.get(i), wi.get(i), Microfacet::get(facets, i));
             let (divided, eta) = (Divided::of(S::get(reflectance, i)), beyond(of.etas[i], o));
             let mirrored = facet.mirrored(&of.facets(i), &divided, eta, [o, w]);
             let refracted = facet.refracted(&of.facets(i), &divided, eta, [o, w]);
@@ -199,7 +201,7 @@ impl<F: Lossy> DielectricLanes<F> {
                 let Some((of, rough)) = each(lane).and_then(|of| Some((of, of.rough.as_ref()?))) else { continue };
                 let directions = [wo.get(lane), wi.get(lane)];
                 let known = FacetTerms::get(&self.known, lane);
-                let (scattered, drawn) = of.scattered(rough, &known, directions, &Facet::get(facets, lane));
+                let (scattered, drawn) = of.scattered(rough, &known, directions, &Microfacet::get(facets, lane));
                 value.set(lane, scattered.rgb());
                 pdf[lane] = drawn;
             }
@@ -312,7 +314,7 @@ impl<F: Lossy, S: Split> BsdfColumns<Dielectric<F, S>> for DielectricLanes<F> {
             (*value, *pdf) = (RgbLanes::ZERO, [0.0; LANES]);
             return;
         }
-        let mut facets = Facet::EMPTY;
+        let mut facets = Microfacet::EMPTY;
         meet(level, self, wo, wi, &mut facets);
         self.scattered(level, each, asks, [wo, wi], &facets, (value, pdf));
     }
@@ -335,7 +337,7 @@ impl<F: Lossy, S: Split> BsdfColumns<Dielectric<F, S>> for DielectricLanes<F> {
             return self.sample_smooth(level, each, &smooth, (wo, choice), drawn);
         }
         let BsdfSampleLanes { wi, weight, pdf, eta, is_through } = &mut *drawn;
-        let (mut normal, mut cosines, mut facets) = (VectorLanes::ZERO, [0.0; LANES], Facet::EMPTY);
+        let (mut normal, mut cosines, mut facets) = (VectorLanes::ZERO, [0.0; LANES], Microfacet::EMPTY);
         look(level, self, wo, u, &mut normal, &mut cosines);
         let chances = self.chances(level, each, &rough, wo, &cosines);
         let mut goes = [false; LANES];
@@ -347,7 +349,7 @@ impl<F: Lossy, S: Split> BsdfColumns<Dielectric<F, S>> for DielectricLanes<F> {
             if let Some((from, _)) = rough.and_then(|rough| rough.give_back(&known, wo, choice[lane], u)) {
                 goes[lane] = true;
                 wi.set(lane, from);
-                Facet::between(&self.facets(lane), beyond(self.etas[lane], wo), [wo, from]).put(&mut facets, lane);
+                Microfacet::between(&self.facets(lane), beyond(self.etas[lane], wo), [wo, from]).put(&mut facets, lane);
             }
         }
         self.scattered(level, each, &goes, [wo, wi], &facets, (weight, pdf));

@@ -7,7 +7,7 @@ use raywright_base::math::{DVec3, LANES, in_lanes, select};
 
 /// A facet that mirrors or refracts one direction to another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Facet {
+pub(super) struct Microfacet {
     /// Facet density about its normal; 0 if there is no such facet.
     pub density: f64,
     /// Cosines to both directions, each on its side of the facet.
@@ -18,7 +18,7 @@ pub(super) struct Facet {
 
 in_lanes! {
     /// Facets, one per lane.
-    FacetLanes of Facet { density: f64, cosines: [f64; 2], square: f64 }
+    FacetLanes of Microfacet { density: f64, cosines: [f64; 2], square: f64 }
 }
 
 impl FacetLanes {
@@ -35,7 +35,7 @@ pub(super) fn seen<F: Facets>(facets: &F, wo: DVec3, u: [f64; 2]) -> DVec3 {
     DVec3::new(h.x, h.y, h.z.copysign(wo.z))
 }
 
-impl Facet {
+impl Microfacet {
     /// The facet that mirrors one direction to another.
     #[inline(always)]
     pub fn mirroring<F: Facets>(facets: &F, [wo, wi]: [DVec3; 2]) -> Self {
@@ -149,7 +149,7 @@ impl<S: Share> Divided<S> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bent {
     pub wi: DVec3,
-    pub facet: Facet,
+    pub facet: Microfacet,
     /// True for refraction.
     pub is_through: bool,
     /// True if the direction is on the correct side.
@@ -168,11 +168,11 @@ impl Bent {
         let e = (eta - 1.0) * (eta + 1.0);
         let g = (e + o * o).sqrt();
         let root = e / (o + g);
-        let refracting = Facet { density: facets.density(h), cosines: [o, g / eta], square: root * root };
+        let refracting = Microfacet { density: facets.density(h), cosines: [o, g / eta], square: root * root };
         let goes_through = !is_total & (bent.z * wo.z < 0.0) & F::sees(bent);
         Self {
             wi: select(is_mirrored, mirrored, bent),
-            facet: Facet::select(is_mirrored, Facet::mirroring(facets, [wo, mirrored]), refracting),
+            facet: Microfacet::select(is_mirrored, Microfacet::mirroring(facets, [wo, mirrored]), refracting),
             is_through: !is_mirrored,
             is_any: if is_mirrored { mirrored.z * wo.z > 0.0 } else { goes_through },
         }

@@ -1,6 +1,6 @@
 //! Areas of surfaces of revolution, and sampling by area.
 
-use super::{Profile, Revolution};
+use super::{ProfileCurve, Revolution};
 use crate::Drawn;
 use raywright_base::math::Affine;
 use std::f64::consts::{PI, TAU};
@@ -11,8 +11,8 @@ impl Revolution {
         let (_, height) = self.frame();
         let [base, tip] = self.radii();
         let side = match self.profile {
-            Profile::Straight { .. } => PI * (base + tip) * height.hypot(tip - base),
-            Profile::Parabola { tip } => {
+            ProfileCurve::Straight { .. } => PI * (base + tip) * height.hypot(tip - base),
+            ProfileCurve::Parabola { tip } => {
                 let (square, whole) = parabola(tip, height);
                 2.0 / 3.0 * PI * tip * tip / square * whole
             }
@@ -43,13 +43,13 @@ impl Revolution {
         } else {
             let share = ((left - areas[0]) / areas[1]).clamp(0.0, 1.0);
             let along = match self.profile {
-                Profile::Straight { base, tip } => {
+                ProfileCurve::Straight { base, tip } => {
                     // A cone, too, is uniform in the squared radius, and a cylinder in the height. One formula without
                     // cancellation serves both.
                     let radius = (base * base + share * (tip - base) * (tip + base)).max(0.0).sqrt();
                     if share > 0.0 { share * (base + tip) / (base + radius) } else { 0.0 }
                 }
-                Profile::Parabola { tip } => {
+                ProfileCurve::Parabola { tip } => {
                     let (square, whole) = parabola(tip, height);
                     ((share * whole).ln_1p() * (2.0 / 3.0)).exp_m1().sqrt() / square.sqrt()
                 }
@@ -77,8 +77,8 @@ impl Revolution {
             })
         };
         caps + match self.profile {
-            Profile::Straight { base, tip } => PI * (base + tip) * ring(height, base - tip),
-            Profile::Parabola { tip } => {
+            ProfileCurve::Straight { base, tip } => PI * (base + tip) * ring(height, base - tip),
+            ProfileCurve::Parabola { tip } => {
                 // dA = 2π r √(r² + 4 h² s²) s ds along the profile (r s, h s²).
                 simpson(|s| TAU * tip * s * ring(2.0 * height * s, -tip))
             }

@@ -1,6 +1,6 @@
 //! Exact intersection of a line with a surface of revolution.
 
-use super::{BASE, Profile, Revolution, SIDE, TIP};
+use super::{BASE, ProfileCurve, Revolution, SIDE, TIP};
 use crate::Contact;
 use crate::line::Line;
 use crate::meeting::{Root, roots};
@@ -125,17 +125,17 @@ impl Revolution {
         match (part, self.profile) {
             (BASE, _) => height,
             (TIP, _) => height.minus(&top()),
-            (_, Profile::Straight { base, tip }) if base == tip => {
+            (_, ProfileCurve::Straight { base, tip }) if base == tip => {
                 let away = away();
                 away.dot(&away).minus(&N::of(base).times(unit).squared().times(&v.dot(&v)))
             }
-            (_, Profile::Straight { base, tip }) => {
+            (_, ProfileCurve::Straight { base, tip }) => {
                 let (vv, away) = (v.dot(&v), away());
                 let widening = N::of(tip).minus(&N::of(base)).times(&height);
                 let width = N::of(base).times(&vv).times(unit).plus(&widening);
                 vv.times(&away.dot(&away)).minus(&width.squared())
             }
-            (_, Profile::Parabola { tip }) => {
+            (_, ProfileCurve::Parabola { tip }) => {
                 let away = away();
                 away.dot(&away).minus(&N::of(tip).squared().times(unit).times(&height))
             }
@@ -157,13 +157,13 @@ impl Revolution {
         let volume = moment.dot(v);
         match self.profile {
             // A cylinder has its own polynomial, smaller by a factor of v².
-            Profile::Straight { base, tip } if base == tip => {
+            ProfileCurve::Straight { base, tip } if base == tip => {
                 let square = N::of(base).times(&line.unit).squared().times(vv);
                 let a = across.dot(across);
                 let discriminant = square.times(&a).minus(&vv.times(&volume.squared()));
                 [a, across.dot(away), away.dot(away).minus(&square), discriminant]
             }
-            Profile::Straight { base, tip } => {
+            ProfileCurve::Straight { base, tip } => {
                 let k = N::of(tip).minus(&N::of(base));
                 let foot = N::of(base).times(vv).times(&line.unit);
                 let (widening, width) = (k.times(climb), foot.plus(&k.times(height)));
@@ -176,7 +176,7 @@ impl Revolution {
                     vv.times(&reach.dot(&reach).minus(&vv.times(&volume).squared())),
                 ]
             }
-            Profile::Parabola { tip } => {
+            ProfileCurve::Parabola { tip } => {
                 let square = N::of(tip).squared().times(&line.unit);
                 let turned = v.cross(moment);
                 let half = square.times(climb).times(&N::of(0.5));

@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 
 /// The profile curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Profile {
+pub(crate) enum ProfileCurve {
     /// A straight line between two radii.
     Straight { base: f64, tip: f64 },
     /// A parabola from the axis to a rim radius.
@@ -40,7 +40,7 @@ pub struct Revolution {
     /// The end of the axis.
     pub(crate) tip: DVec3,
     /// The profile curve.
-    pub(crate) profile: Profile,
+    pub(crate) profile: ProfileCurve,
     /// True if it is closed by disks.
     pub(crate) capped: bool,
 }
@@ -49,8 +49,8 @@ impl Revolution {
     /// The radii of the two ends.
     pub(crate) fn radii(&self) -> [f64; 2] {
         match self.profile {
-            Profile::Straight { base, tip } => [base, tip],
-            Profile::Parabola { tip } => [0.0, tip],
+            ProfileCurve::Straight { base, tip } => [base, tip],
+            ProfileCurve::Parabola { tip } => [0.0, tip],
         }
     }
 
@@ -80,8 +80,8 @@ impl Revolution {
             end.dot(d) + radius * across + 16.0 * UNIT * size
         };
         match self.profile {
-            Profile::Straight { base, tip } => rim(self.base, base).max(rim(self.tip, tip)),
-            Profile::Parabola { tip } => {
+            ProfileCurve::Straight { base, tip } => rim(self.base, base).max(rim(self.tip, tip)),
+            ProfileCurve::Parabola { tip } => {
                 // Along the profile (r v, h v²) the maximum is at the rim or, where d points below it, at v = −r |d⊥| /
                 // (2 h d∥).
                 let along = d.dot(frame.normal) * height;
@@ -101,8 +101,8 @@ impl Revolution {
     pub(crate) fn breaks(&self) -> [f64; 2] {
         match self.profile {
             _ if !self.capped => [0.0, 1.0],
-            Profile::Parabola { .. } => [0.0, 0.5],
-            Profile::Straight { base, tip } => {
+            ProfileCurve::Parabola { .. } => [0.0, 0.5],
+            ProfileCurve::Straight { base, tip } => {
                 let slant = (self.frame().1).hypot(tip - base);
                 let whole = base + slant + tip;
                 [base / whole, (base + slant) / whole]
@@ -124,8 +124,8 @@ impl Revolution {
             TIP => (1.0 - (1.0 - high) * (distance / tip)).max(high.next_up()),
             _ => {
                 let along = match self.profile {
-                    Profile::Straight { .. } => local.z / height,
-                    Profile::Parabola { tip } => distance / tip,
+                    ProfileCurve::Straight { .. } => local.z / height,
+                    ProfileCurve::Parabola { tip } => distance / tip,
                 };
                 (low + (high - low) * along).clamp(low, high)
             }
@@ -162,7 +162,7 @@ impl Revolution {
         }
         let (span, along) = (high - low, (v - low) / (high - low));
         match self.profile {
-            Profile::Straight { .. } => {
+            ProfileCurve::Straight { .. } => {
                 let widening = tip - base;
                 let radius = base + widening * along;
                 let slant = height.hypot(widening);
@@ -177,7 +177,7 @@ impl Revolution {
                 let normal = out * level + up * rise;
                 done(x + out * radius, from, normal, [round * radius, dv], [round * level, DVec3::ZERO])
             }
-            Profile::Parabola { .. } => {
+            ProfileCurve::Parabola { .. } => {
                 let radius = tip * along;
                 // The tangent has the axial part 2 h s for the radial part r, and the normal is at right angles to it.
                 let (n, dn) = (out * (2.0 * height * along) - up * tip, out * (2.0 * height / span));

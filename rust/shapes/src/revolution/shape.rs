@@ -1,6 +1,6 @@
 //! The `Shape` and `Solid` implementations of surfaces of revolution.
 
-use super::{BASE, Profile, Revolution, SIDE, TIP};
+use super::{BASE, ProfileCurve, Revolution, SIDE, TIP};
 use crate::closest::of_segment;
 use crate::closest_on_revolution::Around;
 use crate::line::Line;
@@ -87,8 +87,8 @@ impl Shape for Revolution {
         let from = [across, local.z];
         let [base, tip] = self.radii();
         let side = match self.profile {
-            Profile::Straight { .. } => of_segment([base, 0.0], [tip, height], from),
-            Profile::Parabola { tip } => of_parabola(tip, height, from),
+            ProfileCurve::Straight { .. } => of_segment([base, 0.0], [tip, height], from),
+            ProfileCurve::Parabola { tip } => of_parabola(tip, height, from),
         };
         let cap =
             |radius: f64, at: f64| (self.capped && radius > 0.0).then(|| of_segment([0.0, at], [radius, at], from));
@@ -112,8 +112,8 @@ impl Shape for Revolution {
         let [base, tip] = self.radii();
         let widest = base.max(tip);
         let side = around.nearest(widest, |out| match self.profile {
-            Profile::Straight { .. } => around.of_segment(out, [[base, 0.0], [tip, height]]),
-            Profile::Parabola { tip } => around.of_parabola(out, [tip, height]),
+            ProfileCurve::Straight { .. } => around.of_segment(out, [[base, 0.0], [tip, height]]),
+            ProfileCurve::Parabola { tip } => around.of_parabola(out, [tip, height]),
         });
         let cap = |radius: f64, at: f64| {
             let ends = [[0.0, at], [radius, at]];

@@ -29,7 +29,7 @@ pub struct Tube {
 
 /// An intersection of the line with the torus.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting {
+pub struct TorusHit {
     /// The line parameter.
     pub t: f64,
     /// Relative to the centre.
@@ -186,10 +186,10 @@ impl<'a> TorusLine<'a> {
         (places, count)
     }
 
-    fn meeting(&self, s: DoubleDouble, contact: Contact) -> Meeting {
+    fn meeting(&self, s: DoubleDouble, contact: Contact) -> TorusHit {
         let t = (self.start + s).to_f64();
         let t = if t.abs() < NOTHING { 0.0 } else { t };
-        Meeting { t, position: self.place[0] + self.place[1] * s.to_f64(), contact }
+        TorusHit { t, position: self.place[0] + self.place[1] * s.to_f64(), contact }
     }
 }
 
@@ -252,7 +252,7 @@ fn root(
 /// Call `met` with each intersection of a line with the torus, in order, until it returns true.
 ///
 /// `q` is the line's origin relative to the centre and `direction` has its largest coordinate in [1, 2).
-pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn FnMut(Meeting) -> bool) -> bool {
+pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn FnMut(TorusHit) -> bool) -> bool {
     let Some(line) = TorusLine::new(tube, q, direction) else { return false };
     let (critical, count) = line.critical();
     let end = DoubleDouble::from(line.reach);

@@ -18,7 +18,7 @@
 //! given direction might overflow an f64.
 
 use super::EdgeRay;
-use super::pretest::{BlockRay, Bounds, Weights};
+use super::pretest::{BlockRay, PretestErrors, Weights};
 use super::rows::Rows;
 use raywright_base::simd::Lanes;
 
@@ -47,7 +47,7 @@ pub(super) fn bracket<const N: usize, S: Lanes<N>>(
     above: S::F32,
     denominator: S::F32,
     over: S::F32,
-    errors: &Bounds,
+    errors: &PretestErrors,
     possible: u32,
     inside: u32,
 ) -> Bracket<S::F32> {

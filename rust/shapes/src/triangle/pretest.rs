@@ -79,7 +79,7 @@ pub(super) fn not_rejected<const N: usize, S: Lanes<N>>(
     triangle: [[S::F32; 3]; 3],
     o: [S::F32; 3],
     d: [S::F32; 3],
-    errors: &Bounds,
+    errors: &PretestErrors,
 ) -> u32 {
     let (weights, numerator, largest) = Weights::new(simd, triangle, o, d);
     let (of_weight, _, over) = errors.of(simd, largest);
@@ -98,7 +98,7 @@ pub struct BlockRay {
     pub origin: [f32; 3],
     /// The scaled direction.
     pub direction: [f32; 3],
-    pub(super) errors: Bounds,
+    pub(super) errors: PretestErrors,
 }
 
 /// Sixteen rays prepared for the f32 pretest.
@@ -111,7 +111,7 @@ pub struct BlockRays {
     pub direction: [Column<f32>; 3],
     /// True if all rays have the same origin.
     pub(super) share_origin: bool,
-    pub(super) errors: Bounds,
+    pub(super) errors: PretestErrors,
 }
 
 impl BlockRay {
@@ -119,7 +119,7 @@ impl BlockRay {
     #[inline(always)]
     pub(super) fn new(origin: DVec3, ray: &EdgeRay, largest: f64) -> Self {
         let (o, d) = (origin.as_vec3(), ray.direction.as_vec3());
-        let errors = Bounds::new(largest, ray.t_min >= 0.0, ray.scale);
+        let errors = PretestErrors::new(largest, ray.t_min >= 0.0, ray.scale);
         Self { origin: [o.x, o.y, o.z], direction: [d.x, d.y, d.z], errors }
     }
 
@@ -139,12 +139,12 @@ impl BlockRays {
         origin: [[0.0; RAYS]; 3],
         direction: [[0.0; RAYS]; 3],
         share_origin: false,
-        errors: Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 },
+        errors: PretestErrors { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 },
     };
 
     /// The same rays with zero error bounds, as most ray tracers assume, to measure what that would save.
     pub fn believed(mut self) -> Self {
-        self.errors = Bounds { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 };
+        self.errors = PretestErrors { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 };
         self
     }
 
@@ -165,7 +165,7 @@ impl BlockRays {
     #[inline(always)]
     pub(super) fn new<S: Lanes<RAYS>>(simd: S, origin: &[Column<f32>; 3], rays: &PlainRays, largest: f64) -> Self {
         // The interval of `t` rejects hits behind the ray.
-        let errors = Bounds::new(largest, false, rays.scale);
+        let errors = PretestErrors::new(largest, false, rays.scale);
         let mut differ = 0;
         for column in origin {
             let (numbers, first) = (simd.load(column), simd.splat(column[0]));
@@ -192,7 +192,7 @@ impl BlockRays {
 
 /// Error bounds of the f32 pretest.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
+pub(super) struct PretestErrors {
     /// For a weight, relative to the largest edge.
     pub(super) weight: f32,
     /// For the numerator of t, relative to the squared largest edge.
@@ -203,7 +203,7 @@ pub(super) struct Bounds {
     pub(super) depth: f32,
 }
 
-impl Bounds {
+impl PretestErrors {
     /// Bounds for L = `largest`. `forwards` says that no t below 0 is allowed. `t` along the given direction is at most
     /// `scale` times that along the scaled one.
     #[inline(always)]

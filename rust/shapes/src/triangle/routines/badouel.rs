@@ -4,7 +4,7 @@
 //! projection. The point is rounded before it is compared with the edges, which is why this test is not watertight: two
 //! triangles that share an edge each use a point of their own.
 
-use super::{Meeting, Routine, SingleRay};
+use super::{Routine, SingleRay, TriangleHit};
 use raywright_base::math::Vec3;
 
 /// Plane first, then the projected triangle.
@@ -48,7 +48,7 @@ impl Routine for Badouel {
     }
 
     #[inline(always)]
-    fn meet(ray: &SingleRay, triangle: &Shadow) -> Option<Meeting> {
+    fn meet(ray: &SingleRay, triangle: &Shadow) -> Option<TriangleHit> {
         let Shadow { normal, offset, axes: [i, j], a, ab, ac } = *triangle;
         let across = normal.dot(ray.direction);
         if across == 0.0 {
@@ -75,6 +75,6 @@ impl Routine for Badouel {
             }
             alpha = (x - beta * ac[0]) / ab[0];
         }
-        if alpha >= 0.0 && alpha + beta <= 1.0 { Meeting::new(t, alpha, beta) } else { None }
+        if alpha >= 0.0 && alpha + beta <= 1.0 { TriangleHit::new(t, alpha, beta) } else { None }
     }
 }

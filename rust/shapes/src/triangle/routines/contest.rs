@@ -7,9 +7,9 @@ use super::badouel::Badouel;
 use super::edge_f32::EdgeF32;
 use super::edge_f64::EdgeF64;
 use super::moller_trumbore::{MollerTrumbore, MollerTrumboreEdges};
-use super::volumes::Volumes;
+use super::volumes::SignedVolumes;
 use super::woop::Woop;
-use super::{Meeting, Routine, SingleRay};
+use super::{Routine, SingleRay, TriangleHit};
 use raywright_base::math::Vec3;
 
 /// Pairs per timed batch, loaded beforehand: few enough for a second-level cache.
@@ -28,9 +28,9 @@ pub trait Contender: Send + Sync {
     /// The size of its triangle data in bytes.
     fn bytes(&self) -> usize;
     /// Test every pair once and return the results.
-    fn answers(&self) -> Vec<Option<Meeting>>;
+    fn answers(&self) -> Vec<Option<TriangleHit>>;
     /// Test every pair and return the time taken.
-    fn time(&self, answers: &mut [Option<Meeting>]) -> Duration;
+    fn time(&self, answers: &mut [Option<TriangleHit>]) -> Duration;
 }
 
 impl Contest {
@@ -45,7 +45,7 @@ impl Contest {
             TestPairs::<MollerTrumbore>::ready(rays, triangles),
             TestPairs::<MollerTrumboreEdges>::ready(rays, triangles),
             TestPairs::<Badouel>::ready(rays, triangles),
-            TestPairs::<Volumes>::ready(rays, triangles),
+            TestPairs::<SignedVolumes>::ready(rays, triangles),
             TestPairs::<Woop>::ready(rays, triangles),
             TestPairs::<EdgeF32>::ready(rays, triangles),
             TestPairs::<EdgeF64>::ready(rays, triangles),
@@ -83,7 +83,7 @@ where
 
 /// One test. The pair is hidden from the compiler, which might otherwise vectorize across tests.
 #[inline(always)]
-fn test<R: Routine>(pair: &(R::Ray, R::Triangle)) -> Option<Meeting> {
+fn test<R: Routine>(pair: &(R::Ray, R::Triangle)) -> Option<TriangleHit> {
     let (ray, triangle) = black_box(pair);
     R::meet(ray, triangle)
 }
@@ -102,11 +102,11 @@ where
         size_of::<R::Triangle>()
     }
 
-    fn answers(&self) -> Vec<Option<Meeting>> {
+    fn answers(&self) -> Vec<Option<TriangleHit>> {
         self.0.iter().map(test::<R>).collect()
     }
 
-    fn time(&self, answers: &mut [Option<Meeting>]) -> Duration {
+    fn time(&self, answers: &mut [Option<TriangleHit>]) -> Duration {
         let mut spent = Duration::ZERO;
         for (pairs, answers) in self.0.chunks(NEAR).zip(answers.chunks_mut(NEAR)) {
             // A warm-up from back to front loads the pairs without training the branch predictor on their order.

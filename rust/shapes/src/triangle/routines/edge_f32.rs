@@ -5,7 +5,7 @@
 //! exactly, too, so shared edges are watertight. t is the mean of the corners' depths along the direction's largest
 //! axis with these weights.
 
-use super::{Meeting, Routine, SingleRay, relative, signs_differ};
+use super::{Routine, SingleRay, TriangleHit, relative, signs_differ};
 use raywright_base::math::Vec3;
 
 /// The edge test in f32.
@@ -35,7 +35,7 @@ impl Routine for EdgeF32 {
     }
 
     #[inline(always)]
-    fn meet(ray: &AxisRay, corners: &[Vec3; 3]) -> Option<Meeting> {
+    fn meet(ray: &AxisRay, corners: &[Vec3; 3]) -> Option<TriangleHit> {
         let [a, b, c] = relative(corners, ray.origin);
         let weight = |v: Vec3, w: Vec3| ray.direction.dot((v - w).cross(v + w));
         let (of_a, of_b, of_c) = (weight(b, c), weight(c, a), weight(a, b));
@@ -48,6 +48,6 @@ impl Routine for EdgeF32 {
         }
         let k = ray.axis;
         let t = (of_a * a[k] + of_b * b[k] + of_c * c[k]) / (sum * ray.direction[k]);
-        Meeting::new(t, of_b / sum, of_c / sum)
+        TriangleHit::new(t, of_b / sum, of_c / sum)
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! [`EdgeRay`] has the formulas and the proof. Corners are stored in f32 and widened for the test.
 
-use super::{Meeting, Routine, SingleRay};
+use super::{Routine, SingleRay, TriangleHit};
 use crate::triangle::EdgeRay;
 use raywright_base::math::{Ray, Region, Vec3};
 
@@ -25,9 +25,9 @@ impl Routine for EdgeF64 {
     }
 
     #[inline(always)]
-    fn meet(ray: &Option<EdgeRay>, corners: &[Vec3; 3]) -> Option<Meeting> {
+    fn meet(ray: &Option<EdgeRay>, corners: &[Vec3; 3]) -> Option<TriangleHit> {
         let ray = ray.as_ref()?;
         let found = ray.meet(corners.map(|c| c.as_dvec3()))?;
-        Some(Meeting { t: found.t * ray.scale, u: found.uv[0], v: found.uv[1] })
+        Some(TriangleHit { t: found.t * ray.scale, u: found.uv[0], v: found.uv[1] })
     }
 }

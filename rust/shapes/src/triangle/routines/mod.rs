@@ -33,7 +33,7 @@ pub trait Routine {
     fn ray(ray: SingleRay, corners: [Vec3; 3]) -> Self::Ray;
 
     /// Intersect the ray with the triangle.
-    fn meet(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<Meeting>;
+    fn meet(ray: &Self::Ray, triangle: &Self::Triangle) -> Option<TriangleHit>;
 }
 
 /// A half-line `origin + t · direction`, t ≥ 0, in single precision.
@@ -47,7 +47,7 @@ pub struct SingleRay {
 
 /// An intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
+pub struct TriangleHit {
     /// The ray parameter, in lengths of the direction.
     pub t: f64,
     /// The weight of the second corner.
@@ -56,7 +56,7 @@ pub struct Meeting {
     pub v: f64,
 }
 
-impl Meeting {
+impl TriangleHit {
     /// Convert from f32; None if `t` is out of range.
     #[inline(always)]
     fn new(t: f32, u: f32, v: f32) -> Option<Self> {

@@ -7,7 +7,7 @@
 //! The paper also rejects every determinant below 10⁻⁶, and with it every triangle of a small scene; here only zero is
 //! rejected.
 
-use super::{Meeting, Routine, SingleRay};
+use super::{Routine, SingleRay, TriangleHit};
 use raywright_base::math::Vec3;
 
 /// With the corners as given.
@@ -17,20 +17,20 @@ pub struct MollerTrumbore;
 pub struct MollerTrumboreEdges;
 
 /// One corner and its two edges.
-pub struct Edges {
+pub struct CornerEdges {
     a: Vec3,
     ab: Vec3,
     ac: Vec3,
 }
 
-impl Edges {
+impl CornerEdges {
     #[inline(always)]
     fn new([a, b, c]: [Vec3; 3]) -> Self {
         Self { a, ab: b - a, ac: c - a }
     }
 
     #[inline(always)]
-    fn meet(&self, ray: &SingleRay) -> Option<Meeting> {
+    fn meet(&self, ray: &SingleRay) -> Option<TriangleHit> {
         let p = ray.direction.cross(self.ac);
         let determinant = self.ab.dot(p);
         if determinant == 0.0 {
@@ -44,7 +44,7 @@ impl Edges {
         }
         let q = s.cross(self.ab);
         let v = ray.direction.dot(q) * inverse;
-        if v >= 0.0 && u + v <= 1.0 { Meeting::new(self.ac.dot(q) * inverse, u, v) } else { None }
+        if v >= 0.0 && u + v <= 1.0 { TriangleHit::new(self.ac.dot(q) * inverse, u, v) } else { None }
     }
 }
 
@@ -62,18 +62,18 @@ impl Routine for MollerTrumbore {
     }
 
     #[inline(always)]
-    fn meet(ray: &SingleRay, corners: &[Vec3; 3]) -> Option<Meeting> {
-        Edges::new(*corners).meet(ray)
+    fn meet(ray: &SingleRay, corners: &[Vec3; 3]) -> Option<TriangleHit> {
+        CornerEdges::new(*corners).meet(ray)
     }
 }
 
 impl Routine for MollerTrumboreEdges {
     const NAME: &'static str = "the same, edges stored";
-    type Triangle = Edges;
+    type Triangle = CornerEdges;
     type Ray = SingleRay;
 
-    fn triangle(corners: [Vec3; 3]) -> Edges {
-        Edges::new(corners)
+    fn triangle(corners: [Vec3; 3]) -> CornerEdges {
+        CornerEdges::new(corners)
     }
 
     fn ray(ray: SingleRay, _: [Vec3; 3]) -> SingleRay {
@@ -81,7 +81,7 @@ impl Routine for MollerTrumboreEdges {
     }
 
     #[inline(always)]
-    fn meet(ray: &SingleRay, edges: &Edges) -> Option<Meeting> {
+    fn meet(ray: &SingleRay, edges: &CornerEdges) -> Option<TriangleHit> {
         edges.meet(ray)
     }
 }

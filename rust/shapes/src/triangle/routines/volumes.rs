@@ -9,13 +9,13 @@
 //! An edge shared by two triangles has the same volume in both, except for its sign, so shared edges are watertight.
 //! Far from the origin b and c are nearly equal, and their cross product is mostly rounding error.
 
-use super::{Meeting, Routine, SingleRay, relative, signs_differ};
+use super::{Routine, SingleRay, TriangleHit, relative, signs_differ};
 use raywright_base::math::Vec3;
 
 /// Signed volumes in f32.
-pub struct Volumes;
+pub struct SignedVolumes;
 
-impl Routine for Volumes {
+impl Routine for SignedVolumes {
     const NAME: &'static str = "signed volumes";
     type Triangle = [Vec3; 3];
     type Ray = SingleRay;
@@ -29,7 +29,7 @@ impl Routine for Volumes {
     }
 
     #[inline(always)]
-    fn meet(ray: &SingleRay, corners: &[Vec3; 3]) -> Option<Meeting> {
+    fn meet(ray: &SingleRay, corners: &[Vec3; 3]) -> Option<TriangleHit> {
         let [a, b, c] = relative(corners, ray.origin);
         let bc = b.cross(c);
         let of_a = ray.direction.dot(bc);
@@ -43,6 +43,6 @@ impl Routine for Volumes {
             return None;
         }
         let inverse = 1.0 / sum;
-        Meeting::new(a.dot(bc) * inverse, of_b * inverse, of_c * inverse)
+        TriangleHit::new(a.dot(bc) * inverse, of_b * inverse, of_c * inverse)
     }
 }

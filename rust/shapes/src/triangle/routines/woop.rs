@@ -7,7 +7,7 @@
 //! The shear rounds the corners. So the decision is exact for a slightly perturbed triangle: neighbours agree with each
 //! other, but not with exact arithmetic on the given triangle.
 
-use super::{Meeting, Routine, SingleRay, relative, signs_differ};
+use super::{Routine, SingleRay, TriangleHit, relative, signs_differ};
 use raywright_base::math::Vec3;
 
 /// Sheared to the ray, in f32, with a fallback to f64.
@@ -47,7 +47,7 @@ impl Routine for Woop {
     }
 
     #[inline(always)]
-    fn meet(ray: &ShearedRay, corners: &[Vec3; 3]) -> Option<Meeting> {
+    fn meet(ray: &ShearedRay, corners: &[Vec3; 3]) -> Option<TriangleHit> {
         let [kx, ky, kz] = ray.axes;
         let [a, b, c] = relative(corners, ray.origin);
         let (ax, ay) = (a[kx] - ray.shear.x * a[kz], a[ky] - ray.shear.y * a[kz]);
@@ -72,7 +72,7 @@ impl Routine for Woop {
         let (az, bz, cz) = (ray.shear.z * a[kz], ray.shear.z * b[kz], ray.shear.z * c[kz]);
         let t = u * az + v * bz + w * cz;
         let inverse = 1.0 / sum;
-        Meeting::new(t * inverse, v * inverse, w * inverse)
+        TriangleHit::new(t * inverse, v * inverse, w * inverse)
     }
 }
 
