@@ -8,7 +8,7 @@ use super::arrays::{Numbers, Rows, Triples, sealed, unwritten};
 use super::query::CompiledScene;
 use super::rays::{chunks, each};
 use raywright::accel::Touches;
-use raywright::scene::{Counted, Coverage};
+use raywright::scene::{ConeFilter, Coverage};
 use raywright::shapes::triangle::SolidCone;
 
 /// Splits (N+1,), and distance (K,), shape_id (K,) and primitive (K,) of all touched triangles.
@@ -132,7 +132,7 @@ pub fn cone_coverage<'py>(
     let cones = ConeArrays::of(&origins, &directions, &half_angle, &t_max, &shape)?;
     let found = each(py, threads, chunks(cones.count, share(cones.count)), |(start, count)| {
         let share = |i| match cones.get(i) {
-            Some(cone) => coverage.share(&cone, Counted::default()),
+            Some(cone) => coverage.share(&cone, ConeFilter::default()),
             None if cones.is_nan(i) => f64::NAN,
             None => 0.0,
         };

@@ -12,9 +12,9 @@ use super::spectra::{self, Meaning};
 use raywright::optics::Rgb;
 use raywright::optics::spectra::Role;
 use raywright::scene::textures::{
-    Between, Checker, Domain, Fbm, Filter, ImageTexture, Marble, MixTexture, Noise, ObjectTransform, Octaves, Pattern,
-    Picture, ProductTexture, Spectral, Stripes, Texels, Texture, Upsampled, UvTransform, Value, VertexColours, Wood,
-    Wrap,
+    Between, Checker, Domain, Fbm, ImageTexture, Marble, MixTexture, Noise, ObjectTransform, Octaves, Pattern, Picture,
+    ProductTexture, Spectral, Stripes, TexelFilter, Texels, Texture, Upsampled, UvTransform, Value, VertexColours,
+    Wood, Wrap,
 };
 
 /// A converted object; the original stays alive so that its address is not reused.
@@ -212,9 +212,9 @@ impl Textures {
     fn image(&self, given: PyImage<'_>) -> PyResult<ImageTexture> {
         let unknown = |what: &str| PyValueError::new_err(format!("{what} is unknown for reading an image"));
         let filter = match given.filter.as_str() {
-            "nearest" => Filter::Nearest,
-            "bilinear" => Filter::Bilinear,
-            "trilinear" => Filter::Trilinear,
+            "nearest" => TexelFilter::Nearest,
+            "bilinear" => TexelFilter::Bilinear,
+            "trilinear" => TexelFilter::Trilinear,
             other => return Err(unknown(other)),
         };
         let wrap = |word: &str| match word {
@@ -228,7 +228,7 @@ impl Textures {
             [channel] => Some(channel),
             _ => None,
         };
-        let smaller = filter == Filter::Trilinear;
+        let smaller = filter == TexelFilter::Trilinear;
         let key = (given.image.as_ptr() as usize, one, given.decoded, smaller);
         let known = self.pictures.borrow().get(&key).map(|known| known.made.clone());
         let picture = match known {

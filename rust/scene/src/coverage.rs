@@ -34,7 +34,7 @@ pub struct Covering {
 
 /// Filter of a cone query.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Counted {
+pub struct ConeFilter {
     /// A shape that is ignored.
     pub without: Option<u32>,
     /// A normal n and an offset: only points x with n · x above the offset count.
@@ -67,14 +67,14 @@ impl<'a> Coverage<'a> {
     }
 
     /// The share of a cone's directions that hit something; NaN for a cone without an angle.
-    pub fn share(&self, cone: &SolidCone, counted: Counted) -> f64 {
+    pub fn share(&self, cone: &SolidCone, counted: ConeFilter) -> f64 {
         let mut all = 0.0;
         self.meet(cone, counted, |covering| all += covering.share);
         all.min(1.0)
     }
 
     /// Calls `each` with every primitive in a cone.
-    pub fn meet(&self, cone: &SolidCone, counted: Counted, mut each: impl FnMut(Covering)) {
+    pub fn meet(&self, cone: &SolidCone, counted: ConeFilter, mut each: impl FnMut(Covering)) {
         let geometry = self.scene.geometry();
         let counts = |primitive: u32| counted.without != Some(geometry.locate(primitive).0);
         let mut view = Left::new(cone);
@@ -104,7 +104,7 @@ impl<'a> Coverage<'a> {
 }
 
 /// Returns whether the center of a sphere counts.
-fn is_beyond(ball: &Ball, counted: Counted) -> bool {
+fn is_beyond(ball: &Ball, counted: ConeFilter) -> bool {
     counted.beyond.is_none_or(|(normal, offset)| normal.dot(ball.center) > offset)
 }
 

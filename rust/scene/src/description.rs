@@ -99,7 +99,7 @@ impl SceneDescription {
     ///
     /// # Panics
     /// If a mesh is invalid; see [`Geometry::new`].
-    pub(super) fn joined(self) -> Result<Parts, DescriptionError> {
+    pub(super) fn joined(self) -> Result<SceneParts, DescriptionError> {
         self.validate()?;
         let (mut surfaces, mut materials, mut emission) = (Vec::new(), Vec::new(), Vec::new());
         for shape in self.shapes {
@@ -108,12 +108,12 @@ impl SceneDescription {
             materials.push(shape.material);
             emission.push(shape.emission);
         }
-        Ok(Parts { geometry: Geometry::new(surfaces), materials, emission, lights: self.lights })
+        Ok(SceneParts { geometry: Geometry::new(surfaces), materials, emission, lights: self.lights })
     }
 }
 
 /// The parts of a description before an accelerator is built.
-pub(super) struct Parts {
+pub(super) struct SceneParts {
     pub geometry: Geometry,
     /// Material of each shape.
     pub materials: Vec<Arc<dyn Material>>,

@@ -31,7 +31,7 @@ mod view;
 
 pub use cameras::{Camera, CameraConnection, CameraError, CameraRay, CameraRayLanes, Perspective};
 pub use compiled::Scene;
-pub use coverage::{Counted, Coverage, Covering};
+pub use coverage::{ConeFilter, Coverage, Covering};
 pub use description::{DescriptionError, SceneDescription, Shape};
 pub use emission::{Emission, Sides};
 pub use filter::Filter;

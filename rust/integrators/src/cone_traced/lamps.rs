@@ -5,7 +5,7 @@ use crate::Job;
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::Rgb;
-use raywright_scene::{Counted, Coverage, Interaction, LightSample};
+use raywright_scene::{ConeFilter, Coverage, Interaction, LightSample};
 use raywright_shapes::triangle::SolidCone;
 
 /// An emissive primitive and its shape.
@@ -88,7 +88,7 @@ pub(super) fn light(job: &Job, coverage: &Coverage, lamps: &[Lamp], met: &Meetin
         let Some(radiance) = met.shown(job, &Ray::new(from, sight.direction), lamp.primitive) else { continue };
         let apex = origin.ray(sight.direction).origin;
         let cone = SolidCone::new(apex, sight.direction, sight.angle.to_degrees(), sight.distance);
-        let counted = Counted { without: Some(lamp.shape), ..Counted::default() };
+        let counted = ConeFilter { without: Some(lamp.shape), ..ConeFilter::default() };
         let free = cone.map_or(0.0, |cone| 1.0 - coverage.share(&cone, counted));
         light += scattered * radiance * (sight.solid_angle * free);
     }

@@ -9,7 +9,7 @@ use lamps::{Lamp, lamps, light};
 use raywright_base::math::DVec3;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{Camera, Counted, Coverage, Perspective, Scene};
+use raywright_scene::{Camera, ConeFilter, Coverage, Perspective, Scene};
 
 /// Cone tracing (Amanatides, "Ray Tracing with Cones", 1984): one cone per pixel, of its solid angle, instead of
 /// samples. Surfaces are weighted by the share of the cone that they cover, nearest first. Area lamps have soft shadows
@@ -110,7 +110,7 @@ impl Tracing<'_> {
         let mut radiance = Rgb::ZERO;
         while let Some(cone) = cones.pop() {
             let Some(solid) = cone.solid() else { continue };
-            let counted = Counted { beyond: cone.beyond, ..Counted::default() };
+            let counted = ConeFilter { beyond: cone.beyond, ..ConeFilter::default() };
             coverage.meet(&solid, counted, |covering| {
                 let Some(met) = Meeting::new(&self.job, &cone, covering.primitive, covering.direction) else {
                     return;

@@ -57,7 +57,7 @@ pub enum Domain {
 
 /// A point of a domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct DomainPoint {
     pub point: DVec3,
     /// Distance of adjacent rays along each axis.
     pub widths: DVec3,
@@ -65,7 +65,7 @@ pub(super) struct Place {
     pub axes: usize,
 }
 
-impl Place {
+impl DomainPoint {
     /// Distance of adjacent rays as one number: the root mean square over the axes.
     #[inline]
     pub fn size(&self) -> f64 {
@@ -76,18 +76,18 @@ impl Place {
 impl Domain {
     /// Maps a lookup point to the domain.
     #[inline]
-    pub(super) fn place(&self, point: &TexturePoint) -> Place {
+    pub(super) fn place(&self, point: &TexturePoint) -> DomainPoint {
         match self {
             Self::Uv(map) => {
                 let ([x, y], [across, up]) = (map.point(point.uv), map.stretch());
                 let widths = DVec3::new(across, up, 0.0) * point.width;
-                Place { point: DVec3::new(x, y, 0.0), widths, axes: 2 }
+                DomainPoint { point: DVec3::new(x, y, 0.0), widths, axes: 2 }
             }
             Self::Object(ObjectTransform(rows)) => {
                 let p = point.position;
                 let at = rows.map(|[a, b, c, d]| a * p.x + b * p.y + c * p.z + d);
                 let stretch = rows.map(|[a, b, c, _]| DVec3::new(a, b, c).length());
-                Place { point: at.into(), widths: DVec3::from_array(stretch) * point.size, axes: 3 }
+                DomainPoint { point: at.into(), widths: DVec3::from_array(stretch) * point.size, axes: 3 }
             }
         }
     }

@@ -18,7 +18,7 @@ pub enum Wrap {
 
 /// Filtering of texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Filter {
+pub enum TexelFilter {
     /// The nearest texel.
     Nearest,
     /// Bilinear interpolation of four texels.
@@ -31,14 +31,14 @@ pub enum Filter {
 /// A picture over texture coordinates from (0, 0) at its lower left to (1, 1).
 #[derive(Clone, Debug)]
 pub struct ImageTexture {
-    /// The picture; with mipmap levels for [`Filter::Trilinear`].
+    /// The picture; with mipmap levels for [`TexelFilter::Trilinear`].
     pub picture: Arc<Picture>,
     /// Map from the surface's coordinates to those of the picture.
     pub uv: UvTransform,
     /// Wrapping along u and along v.
     pub wrap: [Wrap; 2],
     /// Filter.
-    pub filter: Filter,
+    pub filter: TexelFilter,
 }
 
 impl Wrap {
@@ -99,13 +99,13 @@ impl Texture for ImageTexture {
         let [u, v] = self.uv.point(point.uv);
         let at = [self.wrap[0].near(u), self.wrap[1].near(1.0 - v)];
         let value = match self.filter {
-            Filter::Nearest => {
+            TexelFilter::Nearest => {
                 let level = self.picture.level(0);
                 let index = |k: usize, n: usize| self.wrap[k].index((at[k] * n as f64).floor() as i64, n);
                 level.texel(index(0, level.width), index(1, level.height))
             }
-            Filter::Bilinear => self.bilinear(self.picture.level(0), at),
-            Filter::Trilinear => {
+            TexelFilter::Bilinear => self.bilinear(self.picture.level(0), at),
+            TexelFilter::Trilinear => {
                 let halvings = self.halvings(point.width).min((self.picture.levels() - 1) as f64);
                 let finer = halvings.floor();
                 let value = self.bilinear(self.picture.level(finer as usize), at);
@@ -131,7 +131,7 @@ impl Texture for ImageTexture {
     }
 
     fn needs(&self) -> Needs {
-        Needs { uv: true, width: self.filter == Filter::Trilinear, ..Needs::NONE }
+        Needs { uv: true, width: self.filter == TexelFilter::Trilinear, ..Needs::NONE }
     }
 }
 
@@ -141,8 +141,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn texture(width: usize, height: usize, texels: Texels, wrap: Wrap, filter: Filter) -> ImageTexture {
-        let picture = Picture::new(width, height, texels, filter == Filter::Trilinear).unwrap();
+    fn texture(width: usize, height: usize, texels: Texels, wrap: Wrap, filter: TexelFilter) -> ImageTexture {
+        let picture = Picture::new(width, height, texels, filter == TexelFilter::Trilinear).unwrap();
         ImageTexture { picture: Arc::new(picture), uv: UvTransform::default(), wrap: [wrap; 2], filter }
     }
 
@@ -160,7 +160,7 @@ mod tests {
                 let middle = |k: u32, n: u32| (k as f32 + 0.5) / n as f32;
                 f(middle(i % w, w), 1.0 - middle(i / w, h))
             });
-            let ramp = texture(16, 8, Texels::Colour(all.collect()), Wrap::Clamp, Filter::Bilinear);
+            let ramp = texture(16, 8, Texels::Colour(all.collect()), Wrap::Clamp, TexelFilter::Bilinear);
             let value = ramp.at(&at(u, v, 0.0));
             let expected = Rgb::new(f64::from(dark) + u, 2.0 * v - u, 0.25 * v);
             prop_assert!((value - expected).abs().max() < 1e-6);
@@ -170,7 +170,7 @@ mod tests {
         fn values_stay_in_the_range(u in -5.0..5.0f64, v in -5.0..5.0f64, width in 0.0..2.0f64, kind in 0usize..3) {
             let wrap = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror][kind];
             let all = (0..7 * 5).map(|i| (i * i % 11) as u8 * 20 + 3).collect();
-            let image = texture(7, 5, Texels::Grey8(all, true), wrap, Filter::Trilinear);
+            let image = texture(7, 5, Texels::Grey8(all, true), wrap, TexelFilter::Trilinear);
             let ([low, high], value) = (image.range(), image.at(&at(u, v, width)));
             prop_assert!((0..3).all(|k| low[k] <= value[k] && value[k] <= high[k]));
         }
@@ -180,14 +180,14 @@ mod tests {
     fn the_lower_left_is_at_zero() {
         // Two rows: 0 1 above, 2 3 below.
         let corners = Texels::Grey(vec![0.0, 1.0, 2.0, 3.0]);
-        for filter in [Filter::Nearest, Filter::Bilinear, Filter::Trilinear] {
+        for filter in [TexelFilter::Nearest, TexelFilter::Bilinear, TexelFilter::Trilinear] {
             let image = texture(2, 2, corners.clone(), Wrap::Clamp, filter);
             for ([u, v], expected) in [([0.0, 0.0], 2.0), ([1.0, 0.0], 3.0), ([0.0, 1.0], 0.0), ([1.0, 1.0], 1.0)] {
                 assert_eq!(image.at(&at(u, v, 0.0)), Rgb::splat(expected));
             }
             assert_eq!(image.at(&at(0.25, 0.25, 0.0)), Rgb::splat(2.0));
         }
-        let image = texture(2, 2, corners, Wrap::Repeat, Filter::Bilinear);
+        let image = texture(2, 2, corners, Wrap::Repeat, TexelFilter::Bilinear);
         assert_eq!(image.at(&at(0.5, 0.5, 0.0)), Rgb::splat(1.5));
         // Across the edge, where it repeats.
         assert_eq!(image.at(&at(0.0, 0.25, 0.0)), Rgb::splat(2.5));
@@ -198,7 +198,7 @@ mod tests {
     fn edges_are_wrapped_as_asked() {
         let row = || Texels::Grey(vec![1.0, 2.0, 3.0]);
         let values = |wrap| {
-            let image = texture(3, 1, row(), wrap, Filter::Nearest);
+            let image = texture(3, 1, row(), wrap, TexelFilter::Nearest);
             (-4..8).map(|i| image.at(&at((f64::from(i) + 0.5) / 3.0, 0.5, 0.0))[0]).collect::<Vec<_>>()
         };
         assert_eq!(values(Wrap::Repeat), [3.0, 1.0, 2.0, 3.0, 1.0, 2.0, 3.0, 1.0, 2.0, 3.0, 1.0, 2.0]);
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn wide_looks_see_means() {
         let all: Vec<_> = (0..64).map(|i| f32::from(u8::from((i + i / 8) % 2 == 1))).collect();
-        let image = texture(8, 8, Texels::Grey(all), Wrap::Repeat, Filter::Trilinear);
+        let image = texture(8, 8, Texels::Grey(all), Wrap::Repeat, TexelFilter::Trilinear);
         assert_eq!(image.at(&at(0.3, 0.4, 1.0)), Rgb::splat(0.5));
         assert_eq!(image.at(&at(0.3, 0.4, 2.0 / 8.0)), Rgb::splat(0.5));
         assert_eq!(image.at(&at(0.3, 0.4, 1e9)), image.mean());

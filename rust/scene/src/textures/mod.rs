@@ -24,7 +24,7 @@ mod wood;
 pub use checker::Checker;
 pub use domain::{Domain, ObjectTransform, UvTransform};
 pub use fbm::{Fbm, Octaves};
-pub use image::{Filter, ImageTexture, Wrap};
+pub use image::{ImageTexture, TexelFilter, Wrap};
 pub use marble::Marble;
 pub use mix::MixTexture;
 pub use needs::Needs;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 /// Numbered edges with their adjacent faces; faces can be removed.
 #[derive(Clone, Debug)]
-pub struct Edges {
+pub struct EdgeAdjacency {
     /// Lower and higher corner number of each edge.
     pub ends: Vec<[u32; 2]>,
     /// Edges of each face: those of face `i` from `first[i]` to `first[i + 1]`.
@@ -24,7 +24,7 @@ struct DirectedEdge {
     is_forward: bool,
 }
 
-impl Edges {
+impl EdgeAdjacency {
     /// Builds the adjacency of faces. Edges with corners within them are cut there; `chains` lists these corners from
     /// the lower end to the higher.
     pub fn new(faces: impl Iterator<Item = [u32; 3]>, chains: &HashMap<[u32; 2], Vec<u32>>) -> Self {

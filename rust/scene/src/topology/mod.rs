@@ -13,7 +13,7 @@ pub use covered::Rule;
 pub use section::{Cut, Cutter, Section};
 pub use weld::{joined, rounding, welded};
 
-use edges::Edges;
+use edges::EdgeAdjacency;
 use raywright_base::math::DVec3;
 use std::collections::HashMap;
 use weld::welded_among;
@@ -96,7 +96,7 @@ impl Topology {
         let named: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| corners[v as usize])).collect();
         let (mut kinds, copies, votes) = sorted_out(points, &named);
         let kept: Vec<u32> = (0..named.len() as u32).filter(|&f| kinds[f as usize] == FaceKind::Open).collect();
-        let mut edges = Edges::new(kept.iter().map(|&f| named[f as usize]), &HashMap::new());
+        let mut edges = EdgeAdjacency::new(kept.iter().map(|&f| named[f as usize]), &HashMap::new());
         let open: Vec<[u32; 2]> = edges.odd().map(|edge| edges.ends[edge as usize]).collect();
         let within = junctions::within(points, &open, tolerance);
         let mut junctions: Vec<u32> = within.iter().flatten().copied().collect();
@@ -104,7 +104,7 @@ impl Topology {
         junctions.dedup();
         if !junctions.is_empty() {
             let chains = open.into_iter().zip(within).filter(|(_, corners)| !corners.is_empty()).collect();
-            edges = Edges::new(kept.iter().map(|&f| named[f as usize]), &chains);
+            edges = EdgeAdjacency::new(kept.iter().map(|&f| named[f as usize]), &chains);
         }
         let is_copied: Vec<bool> = kept.iter().map(|&f| copies[f as usize].is_multiple_of(2)).collect();
         for face in patches::doubled(&edges, &is_copied) {
@@ -170,7 +170,7 @@ fn sorted_out(points: &[DVec3], faces: &[[u32; 3]]) -> (Vec<FaceKind>, Vec<u32>,
 
 /// Connected components: for each face, the first face of its component. For that face also returns whether the
 /// component is oriented, or `None` if it is not closed.
-fn closed_parts(edges: &Edges) -> (Vec<u32>, Vec<Option<bool>>) {
+fn closed_parts(edges: &EdgeAdjacency) -> (Vec<u32>, Vec<Option<bool>>) {
     let parts = edges.parts();
     let mut whole = vec![Some(true); parts.len()];
     for edge in 0..edges.ends.len() as u32 {

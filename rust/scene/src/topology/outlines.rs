@@ -4,14 +4,14 @@ use std::collections::VecDeque;
 
 /// A polyline by its point numbers. A closed one repeats its first point at the end.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outline {
+pub struct Polyline {
     /// Points in order.
     pub points: Vec<u32>,
     /// Segments between them; true if the segment is traversed forwards.
     pub segments: Vec<(u32, bool)>,
 }
 
-impl Outline {
+impl Polyline {
     /// Returns whether it is closed.
     pub fn is_closed(&self) -> bool {
         self.points.len() > 1 && self.points.first() == self.points.last()
@@ -29,7 +29,7 @@ impl Outline {
 /// Joins segments between numbered points into polylines, in either direction. Open ones come first, starting at points
 /// where an odd number of segments end. At a point with more than two segments, a polyline prefers one that continues
 /// in its direction. If it returns to one of its points, the loop is split off as a polyline of its own.
-pub fn outlines(points: usize, segments: &[[u32; 2]]) -> Vec<Outline> {
+pub fn outlines(points: usize, segments: &[[u32; 2]]) -> Vec<Polyline> {
     const ELSEWHERE: u32 = u32::MAX;
     let mut at: Vec<VecDeque<u32>> = vec![VecDeque::new(); points];
     for (i, &[from, to]) in segments.iter().enumerate() {
@@ -42,7 +42,7 @@ pub fn outlines(points: usize, segments: &[[u32; 2]]) -> Vec<Outline> {
     // Position of each point on the polyline.
     let mut places = vec![ELSEWHERE; points];
     for begin in odd.into_iter().chain(segments.iter().map(|&[from, _]| from)) {
-        let mut line = Outline { points: vec![begin], segments: Vec::new() };
+        let mut line = Polyline { points: vec![begin], segments: Vec::new() };
         places[begin as usize] = 0;
         let mut here = begin;
         loop {
@@ -66,7 +66,7 @@ pub fn outlines(points: usize, segments: &[[u32; 2]]) -> Vec<Outline> {
             around.iter().for_each(|&point| places[point as usize] = ELSEWHERE);
             around.insert(0, here);
             around.push(here);
-            loops.push(Outline { points: around, segments: line.segments.split_off(place as usize) });
+            loops.push(Polyline { points: around, segments: line.segments.split_off(place as usize) });
         }
         line.points.iter().for_each(|&point| places[point as usize] = ELSEWHERE);
         if !line.segments.is_empty() {

@@ -1,13 +1,13 @@
 //! Patches between non-manifold edges: walls within bodies.
 
-use super::edges::Edges;
+use super::edges::EdgeAdjacency;
 use std::collections::HashMap;
 
 /// Duplicated faces that do not belong to any surface. These form components of faces that occur an even number of
 /// times. A component is returned if most of its edges shared with other faces have an odd face count with it, and an
 /// even one without. A wall between two bodies qualifies; the surface of a mesh with every face in both orientations
 /// does not.
-pub fn doubled(edges: &Edges, is_copied: &[bool]) -> Vec<u32> {
+pub fn doubled(edges: &EdgeAdjacency, is_copied: &[bool]) -> Vec<u32> {
     if !is_copied.contains(&true) {
         return Vec::new();
     }
@@ -29,7 +29,7 @@ pub fn doubled(edges: &Edges, is_copied: &[bool]) -> Vec<u32> {
 /// Faces of walls within bodies. Patches are components across edges with two faces, processed in order of area. A
 /// patch is removed if most of its shared edges have an odd face count with it and an even one without. A wall that
 /// spans a rim within a body has less area than the surface around it.
-pub fn partitions(edges: &Edges, area: impl Fn(u32) -> f64) -> Vec<u32> {
+pub fn partitions(edges: &EdgeAdjacency, area: impl Fn(u32) -> f64) -> Vec<u32> {
     if edges.odd().next().is_none() {
         return Vec::new();
     }

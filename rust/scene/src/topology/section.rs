@@ -1,7 +1,7 @@
 //! Plane sections of meshes.
 
 use super::covered::{Rule, covered};
-use super::outlines::{Outline, outlines};
+use super::outlines::{Polyline, outlines};
 use super::{FaceKind, Topology, joined};
 use raywright_accel::BoxTree;
 use raywright_base::math::{DVec2, DVec3};
@@ -177,7 +177,7 @@ impl Segments {
     }
 
     /// Joins segments into polylines, merging points with an odd number of segments within a distance.
-    fn outlines(mut self, joining: f64) -> (Self, Vec<Outline>) {
+    fn outlines(mut self, joining: f64) -> (Self, Vec<Polyline>) {
         if joining > 0.0 {
             self.join_ends(joining);
         }
@@ -211,7 +211,7 @@ impl Segments {
     }
 
     /// The polylines in space, oriented by the majority of their length, and the enclosed area.
-    fn section(&self, lines: Vec<Outline>, normal: DVec3, rule: Rule) -> Section {
+    fn section(&self, lines: Vec<Polyline>, normal: DVec3, rule: Rule) -> Section {
         let across = normal.any_orthonormal_vector();
         let along = normal.cross(across);
         let flat = |p: u32| {
@@ -233,7 +233,7 @@ impl Segments {
             turned.push(if sum < 0.0 { line.reversed() } else { line });
         }
         let flats: Vec<Vec<DVec2>> = turned.iter().map(|line| line.points.iter().map(|&p| flat(p)).collect()).collect();
-        let is_closed: Vec<bool> = turned.iter().map(Outline::is_closed).collect();
+        let is_closed: Vec<bool> = turned.iter().map(Polyline::is_closed).collect();
         let mut segments: Vec<[DVec2; 2]> = Vec::new();
         for (i, line) in turned.iter_mut().enumerate().filter(|(i, _)| is_closed[*i]) {
             let mut ring: Vec<[DVec2; 2]> = flats[i].windows(2).map(|ends| [ends[0], ends[1]]).collect();
@@ -248,7 +248,7 @@ impl Segments {
             }
             segments.extend(ring);
         }
-        let placed = |line: Outline| Cut {
+        let placed = |line: Polyline| Cut {
             is_closed: line.is_closed(),
             points: line.points.iter().map(|&p| self.points[p as usize]).collect(),
         };
