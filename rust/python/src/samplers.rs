@@ -4,7 +4,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::kinds::{Kinds, Read};
-use raywright::render::filter::{self, Filter, Profile, Separable};
+use raywright::render::filter::{self, Filter, FilterProfile, Separable};
 use raywright::sampling::{BatchSize, SamplerKind};
 
 /// Attributes of samplers with batches.
@@ -117,6 +117,6 @@ pub fn filter(filter: &Bound<'_, PyAny>) -> PyResult<Box<dyn Filter>> {
     FILTERS.reader(filter)?(filter)
 }
 
-fn separable<P: Profile + 'static>(profile: Result<P, String>) -> PyResult<Box<dyn Filter>> {
+fn separable<P: FilterProfile + 'static>(profile: Result<P, String>) -> PyResult<Box<dyn Filter>> {
     Ok(Box::new(Separable::new(profile.map_err(PyValueError::new_err)?)))
 }

@@ -1,7 +1,7 @@
 //! Generation of camera samples, sixteen at a time.
 
 use super::Settings;
-use super::filter::{Edges, Filter};
+use super::filter::{FilmCropping, Filter};
 use raywright_base::math::LANES;
 use raywright_base::sampling::{SamplerKind, SamplerLanes};
 use raywright_base::simd::Level;
@@ -23,7 +23,7 @@ pub(super) struct CameraSampler<'a> {
     session: &'a dyn Session,
     filter: &'a dyn Filter,
     /// Cropping of the filter at the film's edges.
-    edges: Option<Edges>,
+    edges: Option<FilmCropping>,
     kind: SamplerKind,
     seed: u64,
     /// True if samples are distributed over the shutter's opening time.
@@ -39,7 +39,7 @@ impl<'a> CameraSampler<'a> {
             camera,
             session,
             filter: settings.filter.as_ref(),
-            edges: Edges::new(settings.filter.as_ref(), [camera.width(), camera.height()]),
+            edges: FilmCropping::new(settings.filter.as_ref(), [camera.width(), camera.height()]),
             kind: settings.sampler,
             seed: settings.seed,
             moves: scene.geometry().moves() || camera.uses_time(),

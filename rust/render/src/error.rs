@@ -2,10 +2,10 @@
 
 use super::Film;
 use super::denominators::{Denominators, around, cross};
-use super::film::Spread;
+use super::film::PixelStatistics;
 use super::good_turing::{Chances, Sightings};
 use super::heavy_tail_bound::Jumps;
-use super::outliers::{Carried, Largest, beside, is_find};
+use super::outliers::{DominantSamples, Largest, beside, is_find};
 use super::patchwork::Patchwork;
 use raywright_base::parallel;
 use raywright_optics::Rgb;
@@ -22,7 +22,7 @@ pub struct ErrorEstimate {
     pub high: f64,
     /// The few samples that dominate the estimate, which is then unreliable; `None` if there are many, or neighbours
     /// show the same brightness.
-    pub carried: Option<Carried>,
+    pub carried: Option<DominantSamples>,
 }
 
 impl ErrorEstimate {
@@ -60,7 +60,8 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     // number of threads.
     let (height, band) = (film.height() as usize, patch as usize);
     let seen: Vec<(Sightings, Vec<f64>)> = parallel::map_chunks(height, band, |rows| {
-        let (mut seen, mut shown, mut spreads) = (Sightings::default(), Vec::new(), vec![Spread::default(); width]);
+        let (mut seen, mut shown, mut spreads) =
+            (Sightings::default(), Vec::new(), vec![PixelStatistics::default(); width]);
         for y in rows {
             film.spreads(y as u32, &mut spreads);
             let peaks = spreads.iter().flat_map(|spread| &spread.peaks[..cells]);
@@ -75,7 +76,7 @@ pub(super) fn estimate(film: &Film) -> Option<ErrorEstimate> {
     let shown: Vec<f64> = seen.into_iter().flat_map(|(_, shown)| shown).collect();
     let picture = PixelErrors { means: &means, shown: &shown, width, patch: patch as usize, cells, chances: &chances };
     let sums: Vec<ErrorSums> = parallel::map_chunks(height, band, |rows| {
-        let (mut sums, mut spreads) = (ErrorSums::default(), vec![Spread::default(); width]);
+        let (mut sums, mut spreads) = (ErrorSums::default(), vec![PixelStatistics::default(); width]);
         let mut patches = vec![Patch::default(); width.div_ceil(band)];
         for y in rows {
             film.spreads(y as u32, &mut spreads);
@@ -147,7 +148,7 @@ struct PixelErrors<'a> {
 
 impl Patch {
     #[inline]
-    fn add(&mut self, picture: &PixelErrors<'_>, (x, y): (usize, usize), spread: &Spread, jumps: &mut Jumps) {
+    fn add(&mut self, picture: &PixelErrors<'_>, (x, y): (usize, usize), spread: &PixelStatistics, jumps: &mut Jumps) {
         let PixelErrors { means, shown, width, patch, cells, chances } = *picture;
         let mean = means[y * width + x];
         let denominators = Denominators::new(&cross(means, width, x, y), spread.variance, spread.samples);

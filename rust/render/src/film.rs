@@ -1,7 +1,7 @@
 //! The film: sums of samples per pixel.
 
 use super::bytes::{Malformed, Reader, Writer};
-use super::tile::{Cell, FilmTile};
+use super::tile::{CellSums, FilmTile};
 use raywright_base::parallel;
 use raywright_optics::Rgb;
 
@@ -36,7 +36,7 @@ pub struct Film {
 
 /// Statistics of a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Spread {
+pub(super) struct PixelStatistics {
     /// Number of samples.
     pub samples: f64,
     /// Estimated variance of its mean.
@@ -172,7 +172,7 @@ impl Film {
         if count == 0 {
             return (0, 0.0);
         }
-        let mean = |of: fn(&Cell) -> Rgb| {
+        let mean = |of: fn(&CellSums) -> Rgb| {
             // Row by row, so that the sum does not depend on the tile size.
             let means = self.pixels(|cells| average(cells, |cell| of(cell) / f64::from(cell.count.max(1))));
             means.iter().map(|rgb| rgb.sum()).sum::<f64>()
@@ -266,7 +266,7 @@ impl Film {
     }
 
     /// Maps a function of its cells over all pixels, row by row from the top.
-    fn pixels<T: Clone + Default + Send>(&self, of: impl Fn(&[Cell]) -> T + Sync) -> Vec<T> {
+    fn pixels<T: Clone + Default + Send>(&self, of: impl Fn(&[CellSums]) -> T + Sync) -> Vec<T> {
         let mut all = vec![T::default(); self.pixel_count()];
         // With width 0 there are no rows, and chunks must not be empty.
         let width = self.width.max(1) as usize;
@@ -275,7 +275,7 @@ impl Film {
     }
 
     /// Maps a function of its cells over the pixels of a row.
-    fn row<T>(&self, y: u32, row: &mut [T], of: impl Fn(&[Cell]) -> T) {
+    fn row<T>(&self, y: u32, row: &mut [T], of: impl Fn(&[CellSums]) -> T) {
         let columns = self.width.div_ceil(self.side) as usize;
         let band = &self.tiles[(y / self.side) as usize * columns..][..columns];
         for (tile, part) in band.iter().zip(row.chunks_mut(self.side as usize)) {
@@ -311,17 +311,17 @@ impl Film {
     }
 
     /// Statistics of each pixel; `None` if a cell has fewer than two samples.
-    pub(super) fn all_spreads(&self) -> Option<Vec<Spread>> {
+    pub(super) fn all_spreads(&self) -> Option<Vec<PixelStatistics>> {
         (self.fewest() >= 2).then(|| self.pixels(|cells| self.spread(cells)))
     }
 
     /// Statistics of the pixels of a row; each cell has at least two samples.
-    pub(super) fn spreads(&self, y: u32, row: &mut [Spread]) {
+    pub(super) fn spreads(&self, y: u32, row: &mut [PixelStatistics]) {
         self.row(y, row, |cells| self.spread(cells));
     }
 
-    fn spread(&self, cells: &[Cell]) -> Spread {
-        let mut spread = Spread::default();
+    fn spread(&self, cells: &[CellSums]) -> PixelStatistics {
+        let mut spread = PixelStatistics::default();
         let mean = average(cells, |cell| cell.sum / f64::from(cell.count.max(1)));
         // The variance of the mean of halves is a quarter of the sum of theirs.
         let cells_squared = cells.len().pow(2) as f64;
@@ -361,7 +361,7 @@ impl Film {
 }
 
 /// Mean over the cells with samples.
-fn average(cells: &[Cell], of: impl Fn(&Cell) -> Rgb) -> Rgb {
+fn average(cells: &[CellSums], of: impl Fn(&CellSums) -> Rgb) -> Rgb {
     match cells {
         [one, other] if other.count > 0 => (of(one) + of(other)) / 2.0,
         _ => of(&cells[0]),
@@ -453,7 +453,7 @@ mod tests {
             assert!((film.variances().unwrap()[1][1] / variance - 1.0).abs() < 1e-12);
             // The largest sample is the one with the largest channel; here all channels are equal.
             let mut grey = film_of(&green, batch);
-            let mut row = [Spread::default()];
+            let mut row = [PixelStatistics::default()];
             grey.spreads(0, &mut row);
             let (_, alone, peak) = textbook(&green, 1);
             assert!((row[0].peaks[0].variance[0] / peak.min(variance) - 1.0).abs() < 1e-12);
@@ -492,7 +492,7 @@ mod tests {
         let green: Vec<f64> = (0..15).map(|n| sample(0, n)[1]).collect();
         let (_, alone, _) = textbook(&green, 1);
         assert!((film.variances().unwrap()[0][1] / alone - 1.0).abs() < 1e-12);
-        let mut row = [Spread::default()];
+        let mut row = [PixelStatistics::default()];
         film.spreads(0, &mut row);
         assert_eq!((row[0].degrees, row[0].samples), (0.0, 15.0));
     }

@@ -40,7 +40,7 @@ pub use bytes::Malformed;
 pub use cover::{Cover, cover};
 pub use error::ErrorEstimate;
 pub use film::Film;
-pub use outliers::Carried;
+pub use outliers::DominantSamples;
 pub use part::Request;
 pub use pilot::{PILOT, pilot};
 pub use pooled::Uncertainty;

@@ -2,7 +2,7 @@
 
 /// The few samples that dominate an error estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carried {
+pub struct DominantSamples {
     /// Number of samples.
     pub samples: u32,
     /// Their share of the estimate, above one half.
@@ -43,12 +43,12 @@ impl Largest {
     }
 
     /// The fewest numbers that make up more than half of a sum, if they are few.
-    pub fn carry(&self, sum: f64) -> Option<Carried> {
+    pub fn carry(&self, sum: f64) -> Option<DominantSamples> {
         let mut share = 0.0;
         for (samples, value) in (1..).zip(&self.0) {
             share += value / sum;
             if share > 0.5 {
-                return Some(Carried { samples, share });
+                return Some(DominantSamples { samples, share });
             }
         }
         None
@@ -105,8 +105,8 @@ mod tests {
 
     #[test]
     fn few_carry_more_than_half_or_none_do() {
-        assert_eq!(largest(&[1.0, 9.0]).carry(10.0), Some(Carried { samples: 1, share: 0.9 }));
-        assert_eq!(largest(&[1.0, 2.0, 2.0]).carry(7.0), Some(Carried { samples: 2, share: 4.0 / 7.0 }));
+        assert_eq!(largest(&[1.0, 9.0]).carry(10.0), Some(DominantSamples { samples: 1, share: 0.9 }));
+        assert_eq!(largest(&[1.0, 2.0, 2.0]).carry(7.0), Some(DominantSamples { samples: 2, share: 4.0 / 7.0 }));
         assert_eq!(largest(&[1.0; 16]).carry(16.0), None);
         assert!(largest(&[1.0; 15]).carry(15.0).is_some());
     }

@@ -1,7 +1,7 @@
 //! Per-pixel uncertainty from few batches, pooled with neighbours.
 
 use super::Film;
-use super::film::Spread;
+use super::film::PixelStatistics;
 use super::student::{digamma, trigamma, trigamma_inverse};
 use raywright_base::parallel;
 use raywright_optics::Rgb;
@@ -42,7 +42,7 @@ pub(super) fn uncertainty(film: &Film) -> Option<Uncertainty> {
     let spreads = film.all_spreads()?;
     let cells = film.cells() as f64;
     let variances: Vec<Rgb> = spreads.iter().map(|spread| spread.variance).collect();
-    let own = |spread: &Spread| if spread.degrees > 0.0 { spread.degrees } else { spread.samples - cells };
+    let own = |spread: &PixelStatistics| if spread.degrees > 0.0 { spread.degrees } else { spread.samples - cells };
     if film.batch() == 1 || spreads.iter().all(|spread| spread.degrees == 0.0) {
         let degrees = spreads.iter().map(own).collect();
         return Some(Uncertainty { pooled: variances.clone(), variances, degrees });
@@ -65,7 +65,7 @@ pub(super) fn uncertainty(film: &Film) -> Option<Uncertainty> {
 }
 
 /// Unbiased logarithm of the ratio by which stratification reduces a pixel's variance; `None` if it is undefined.
-fn log_ratio(spread: &Spread) -> Option<f64> {
+fn log_ratio(spread: &PixelStatistics) -> Option<f64> {
     let (variance, alone) = (spread.variance.sum(), spread.alone.sum());
     let half = spread.degrees / 2.0;
     // Batches that agree to the last bit only show that they agree well.
@@ -91,7 +91,7 @@ fn around(logs: &[Option<f64>], width: usize) -> Vec<Option<f64>> {
 }
 
 /// Degrees of freedom that the mean of the neighbours is worth.
-fn prior(spreads: &[Spread], logs: &[Option<f64>], around: &[Option<f64>]) -> f64 {
+fn prior(spreads: &[PixelStatistics], logs: &[Option<f64>], around: &[Option<f64>]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for ((spread, log), around) in spreads.iter().zip(logs).zip(around) {
         if let (Some(log), Some(around)) = (log, around) {

@@ -46,10 +46,10 @@ pub struct Rendering {
 
 /// A view of a render during a pass, usable from any thread.
 #[derive(Clone, Debug, Default)]
-pub struct Sight(Arc<Mutex<Option<Shown>>>);
+pub struct Sight(Arc<Mutex<Option<PassState>>>);
 
 #[derive(Debug)]
-struct Shown {
+struct PassState {
     film: Arc<LentFilm>,
     error: Option<ErrorEstimate>,
     history: Vec<HistoryRow>,
@@ -61,7 +61,7 @@ struct Shown {
     is_done: bool,
 }
 
-impl Shown {
+impl PassState {
     fn rendering(&self, film: Film) -> Rendering {
         let seconds = self.seconds + self.since.elapsed().as_secs_f64();
         let (error, history, aim) = (self.error, self.history.clone(), self.aim);
@@ -70,7 +70,7 @@ impl Shown {
 }
 
 impl Sight {
-    fn shown(&self) -> MutexGuard<'_, Option<Shown>> {
+    fn shown(&self) -> MutexGuard<'_, Option<PassState>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -212,7 +212,7 @@ impl Rendering {
         };
         let tiles = Loan::of(&mut self.film);
         let (error, history, seconds, aim) = (self.error, self.history.clone(), self.seconds, self.aim);
-        let shown = |film| Shown { film, error, history, seconds, since: Instant::now(), aim, is_done: false };
+        let shown = |film| PassState { film, error, history, seconds, since: Instant::now(), aim, is_done: false };
         *self.sight.shown() = tiles.shared().map(shown);
         (Work { tiles, sight: &self.sight }, goal)
     }

@@ -117,7 +117,7 @@ mod tests {
             value: 0.01,
             low: 0.005,
             high: 0.02,
-            carried: Some(super::super::Carried { samples: 1, share: 0.9 }),
+            carried: Some(super::super::DominantSamples { samples: 1, share: 0.9 }),
         };
         let wide = ErrorEstimate { low: 1e-4, high: 0.04, carried: None, ..few };
         for error in [few, wide] {

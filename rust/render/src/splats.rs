@@ -5,7 +5,7 @@
 //! do not depend on passes or on where samples are taken.
 
 use super::Settings;
-use super::filter::{Edges, Filter};
+use super::filter::{FilmCropping, Filter};
 use raywright_base::parallel;
 use raywright_base::sampling::{Sampler, SamplerKind};
 use raywright_base::workers::Cancel;
@@ -29,7 +29,7 @@ pub(super) struct LightTracer<'a> {
     session: &'a dyn Session,
     filter: &'a dyn Filter,
     /// Cropping of the filter at the film's edges.
-    edges: Option<Edges>,
+    edges: Option<FilmCropping>,
     kind: SamplerKind,
     seed: u64,
     width: u32,
@@ -65,7 +65,7 @@ impl<'a> LightTracer<'a> {
         Some(Self {
             session,
             filter: settings.filter.as_ref(),
-            edges: Edges::new(settings.filter.as_ref(), [camera.width(), camera.height()]),
+            edges: FilmCropping::new(settings.filter.as_ref(), [camera.width(), camera.height()]),
             kind: settings.sampler,
             seed: settings.seed,
             width: camera.width(),

@@ -56,7 +56,7 @@ pub struct FilmTile {
 
 /// All sums of a cell.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cell {
+pub(super) struct CellSums {
     pub count: u32,
     pub sum: Rgb,
     pub squares: Rgb,
@@ -274,12 +274,12 @@ impl FilmTile {
     }
 
     #[inline]
-    pub(super) fn cell(&self, cell: usize) -> Cell {
+    pub(super) fn cell(&self, cell: usize) -> CellSums {
         let mut moments = self.total[cell];
         moments.add(&self.partial[cell]);
         let or_nothing = |all: &[Rgb]| all.get(cell).copied().unwrap_or(Rgb::ZERO);
         let both = |pairs: &[[Rgb; 2]]| pairs.get(cell).map(|[whole, now]| *whole + *now);
-        Cell {
+        CellSums {
             count: self.counts[cell],
             sum: moments.sum,
             squares: moments.squares,

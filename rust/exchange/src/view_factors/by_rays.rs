@@ -20,7 +20,7 @@ const MOST_UNASKED: u32 = 1 << 20;
 pub type Entry = (u32, f64, f64);
 
 /// The state of a thread that computes rows.
-pub struct Rows<'a> {
+pub struct RowSampler<'a> {
     scene: &'a Scene,
     fronts: &'a Fronts,
     seed: u64,
@@ -37,7 +37,7 @@ pub struct Rows<'a> {
     hits: Vec<Hit>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> RowSampler<'a> {
     /// Create the state for a scene.
     pub fn new(scene: &'a Scene, fronts: &'a Fronts, seed: u64) -> Self {
         let count = scene.geometry().count();

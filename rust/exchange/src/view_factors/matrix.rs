@@ -1,7 +1,7 @@
 //! The full matrix of view factors: pairs of clusters with potential blockers, down to pairs of faces.
 
 use super::balance::Balance;
-use super::by_rays::{Entry, Rows};
+use super::by_rays::{Entry, RowSampler};
 use super::clusters::{Cluster, Clusters};
 use super::coincident::overlap;
 use super::distant::Quadrature;
@@ -370,7 +370,7 @@ impl Everything<'_> {
                 if self.steps.is_stopped() {
                     return Vec::new();
                 }
-                let (i, mut rows) = (some[i], Rows::new(self.scene, &self.fronts, self.aim.seed));
+                let (i, mut rows) = (some[i], RowSampler::new(self.scene, &self.fronts, self.aim.seed));
                 let wanted = |j: u32, factor: f64, most: f64| self.wanted([i, j], [factor, most], areas, &greatest);
                 let (row, sent) = rows.row(i, &self.facets[i as usize], self.aim, wanted);
                 self.rays.fetch_add(u64::from(sent), Relaxed);

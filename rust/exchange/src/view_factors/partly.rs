@@ -4,7 +4,7 @@ use super::Sampled;
 use super::distant::Quadrature;
 use super::facet::Facet;
 use super::fronts::Fronts;
-use super::pieces::{Piece, Pieces};
+use super::pieces::{PairPiece, Pieces};
 use super::told::Counts;
 use raywright_base::math::{DVec3, Ray};
 use raywright_base::sampling::{BatchSize, Sampler, SamplerKind, warp};
@@ -107,7 +107,7 @@ impl Pairs<'_> {
 
     /// Sample a segment between both parts of a piece, and its weight; no segment if another face touches one of its
     /// ends.
-    fn draw(&self, sampler: &mut Sampler, piece: &Piece, faces: [u32; 2]) -> Option<(Option<Ray>, f64)> {
+    fn draw(&self, sampler: &mut Sampler, piece: &PairPiece, faces: [u32; 2]) -> Option<(Option<Ray>, f64)> {
         let [one, other] = &piece.facets;
         let start = point(one, warp::uniform_triangle(sampler.two(1)));
         let seen = SeenTriangle::new(other.corners, start);

@@ -18,7 +18,7 @@ const SHARE: f64 = 1.0 / 8.0;
 const NEAR: f64 = 2.0;
 
 /// Parts of two triangles, in front of each other.
-pub struct Piece {
+pub struct PairPiece {
     /// The smaller part, from which rays start, and the larger one.
     pub facets: [Facet; 2],
     /// The triangle that the first part belongs to.
@@ -29,7 +29,7 @@ pub struct Piece {
 
 /// All pieces of a pair.
 pub struct Pieces {
-    pieces: Vec<Piece>,
+    pieces: Vec<PairPiece>,
     /// The cumulative sums of `whole`.
     sums: Vec<f64>,
 }
@@ -62,16 +62,16 @@ impl Pieces {
         let piece = |(part, whole): (Facing, f64)| {
             let [one, other] = part.facets;
             let from = usize::from(one.area > other.area);
-            Piece { facets: if from == 0 { [one, other] } else { [other, one] }, from, whole }
+            PairPiece { facets: if from == 0 { [one, other] } else { [other, one] }, from, whole }
         };
-        let pieces: Vec<Piece> = parts.into_iter().map(piece).collect();
+        let pieces: Vec<PairPiece> = parts.into_iter().map(piece).collect();
         let mut sum = 0.0;
         let sums = pieces.iter().map(|piece| (sum += piece.whole, sum).1).collect();
         Self { pieces, sums }
     }
 
     /// The piece at a fraction of the exchange; `None` if there is no exchange.
-    pub fn at(&self, share: f64) -> Option<&Piece> {
+    pub fn at(&self, share: f64) -> Option<&PairPiece> {
         let at = share * self.sums.last()?;
         let i = self.sums.partition_point(|&sum| sum <= at).min(self.pieces.len() - 1);
         Some(&self.pieces[i])

@@ -1,6 +1,6 @@
 //! Sparse matrices of view factors for scenes with many faces: rows by ray tracing, with entries for hit faces only.
 
-use super::by_rays::{Entry, Rows};
+use super::by_rays::{Entry, RowSampler};
 use super::fronts::Fronts;
 use super::{Aim, facets};
 use raywright_base::parallel;
@@ -36,7 +36,7 @@ pub fn sparse(scene: &Scene, aim: &Aim, work: Work) -> Result<Sparse, Stopped> {
     for start in (0..facets.len()).step_by(round) {
         let count = round.min(facets.len() - start);
         let of_faces = |some: Range<usize>| -> Vec<(Vec<Entry>, u64)> {
-            let mut rows = Rows::new(scene, &fronts, aim.seed);
+            let mut rows = RowSampler::new(scene, &fronts, aim.seed);
             let faces = (start + some.start..start + some.end).take_while(|_| !steps.is_stopped());
             let row = |face: usize| {
                 let (mut row, sent) =

@@ -1,6 +1,6 @@
 //! The Blackman-Harris filter.
 
-use super::{Profile, length};
+use super::{FilterProfile, length};
 
 /// A sum of four cosines with almost no side lobes, nowhere negative (Harris, "On the Use of Windows for Harmonic
 /// Analysis with the Discrete Fourier Transform", 1978: the minimum four-term window).
@@ -16,7 +16,7 @@ impl BlackmanHarris {
     }
 }
 
-impl Profile for BlackmanHarris {
+impl FilterProfile for BlackmanHarris {
     fn radius(&self) -> f64 {
         self.radius
     }

@@ -70,9 +70,9 @@ fn integral(filter: &dyn Filter, low: f64, high: f64) -> f64 {
 
 /// Cropping of a separable filter for every row and column of a film.
 #[derive(Debug)]
-pub struct Edges([Vec<CroppedAxis>; 2]);
+pub struct FilmCropping([Vec<CroppedAxis>; 2]);
 
-impl Edges {
+impl FilmCropping {
     /// Computes the cropping for a film size; `None` if the edges have no effect.
     pub fn new(filter: &dyn Filter, size: [u32; 2]) -> Option<Self> {
         let part = |pixel: u32, size: u32| {
@@ -109,7 +109,7 @@ mod tests {
         let filters: [Boxed<dyn Filter>; 3] = [Boxed::new(bell()), Boxed::new(ringing()), Boxed::new(flat)];
         for filter in filters.map(Cropped) {
             // Far from the ends of y, where the center's weight is the square root of that on both axes.
-            let edges = Edges::new(&filter, [7, 9]).unwrap();
+            let edges = FilmCropping::new(&filter, [7, 9]).unwrap();
             let middle = filter.sample([0.5; 2]).1.sqrt();
             for (column, way) in [(0, 1.0), (1, 1.0), (3, 0.0), (6, -1.0)] {
                 const STEPS: u32 = 1 << 15;
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn far_from_edges_nothing_changes() {
         let filter = Cropped(Boxed::new(Separable::new(Gaussian::new(2.0, 0.5).unwrap())));
-        let edges = Edges::new(&filter, [9, 9]).unwrap();
+        let edges = FilmCropping::new(&filter, [9, 9]).unwrap();
         assert_eq!(edges.on_film([4, 4], [0.3, 0.7]), ([0.3, 0.7], 1.0));
         assert_eq!(edges.share([4, 4]), 1.0);
         // Half a pixel and one and a half from the edge, by the Gaussian minus its value at its radius.
@@ -145,6 +145,6 @@ mod tests {
         for to in [0.5, 1.5] {
             assert!((part(to) - sum(-to) / sum(-2.0)).abs() < 1e-9);
         }
-        assert!(Edges::new(&*filter.0, [9, 9]).is_none());
+        assert!(FilmCropping::new(&*filter.0, [9, 9]).is_none());
     }
 }

@@ -1,6 +1,6 @@
 //! The Gaussian filter.
 
-use super::{Profile, length};
+use super::{FilterProfile, length};
 
 /// A normal distribution minus its value at the radius, so that it is continuous there (Pharr, Jakob and Humphreys,
 /// "Physically Based Rendering", 4th edition, 2023, section 8.8.4).
@@ -17,7 +17,7 @@ impl Gaussian {
     }
 }
 
-impl Profile for Gaussian {
+impl FilterProfile for Gaussian {
     fn radius(&self) -> f64 {
         self.radius.min(WHOLE * self.sigma)
     }

@@ -1,6 +1,6 @@
 //! The Lanczos filter: a windowed sinc.
 
-use super::Profile;
+use super::FilterProfile;
 use std::f64::consts::PI;
 
 /// sinc(x) · sinc(x / n), cut off at its n-th zero: the ideal filter windowed by the central lobe of another (Duchon,
@@ -24,7 +24,7 @@ impl Lanczos {
     }
 }
 
-impl Profile for Lanczos {
+impl FilterProfile for Lanczos {
     fn radius(&self) -> f64 {
         f64::from(self.lobes)
     }

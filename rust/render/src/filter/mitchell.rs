@@ -1,6 +1,6 @@
 //! The Mitchell-Netravali filter.
 
-use super::{Profile, length};
+use super::{FilterProfile, length};
 
 /// A cubic spline with a negative lobe, which sharpens (Mitchell and Netravali, "Reconstruction Filters in Computer
 /// Graphics", 1988). B blurs, C rings; the authors advise B + 2C = 1, and B = C = 1/3 among these.
@@ -23,7 +23,7 @@ impl Mitchell {
     }
 }
 
-impl Profile for Mitchell {
+impl FilterProfile for Mitchell {
     fn radius(&self) -> f64 {
         self.radius
     }

@@ -15,11 +15,11 @@ mod triangle;
 
 pub use blackman_harris::BlackmanHarris;
 pub use box_filter::Box;
-pub use cropped::{Cropped, Edges};
+pub use cropped::{Cropped, FilmCropping};
 pub use gaussian::Gaussian;
 pub use lanczos::Lanczos;
 pub use mitchell::Mitchell;
-pub use separable::{Profile, Separable};
+pub use separable::{FilterProfile, Separable};
 pub use triangle::Triangle;
 
 use raywright_base::math::LANES;
@@ -47,7 +47,7 @@ pub trait Filter: Debug + Send + Sync {
         }
     }
 
-    /// Returns whether pixels near the edge of the film use only the part within it ([`Edges`]).
+    /// Returns whether pixels near the edge of the film use only the part within it ([`FilmCropping`]).
     fn is_cropped(&self) -> bool {
         false
     }

@@ -4,7 +4,7 @@ use super::Filter;
 use std::fmt;
 
 /// A filter along one axis, even in x. Its scale is arbitrary; its integral must not be 0.
-pub trait Profile: fmt::Debug + Send + Sync {
+pub trait FilterProfile: fmt::Debug + Send + Sync {
     /// The profile is 0 beyond this radius.
     fn radius(&self) -> f64;
 
@@ -37,7 +37,7 @@ pub struct Separable<P> {
     guide: Vec<u16>,
 }
 
-impl<P: Profile> Separable<P> {
+impl<P: FilterProfile> Separable<P> {
     /// Minimum number of cells over the whole width.
     const CELLS: usize = 256;
 
@@ -97,7 +97,7 @@ impl<P: fmt::Debug> fmt::Debug for Separable<P> {
 }
 
 /// Integral of a profile over `start..start + step`, by the five-point Gauss-Legendre rule: exact up to degree 9.
-fn quadrature(profile: &impl Profile, start: f64, step: f64) -> f64 {
+fn quadrature(profile: &impl FilterProfile, start: f64, step: f64) -> f64 {
     const POINTS: [(f64, f64); 3] = [
         (0.0, 0.568_888_888_888_888_9),
         (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
@@ -108,7 +108,7 @@ fn quadrature(profile: &impl Profile, start: f64, step: f64) -> f64 {
     0.5 * step * sum
 }
 
-impl<P: Profile> Filter for Separable<P> {
+impl<P: FilterProfile> Filter for Separable<P> {
     fn radius(&self) -> f64 {
         self.radius
     }
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     /// Integrals over u of the weight and of the weight times the offset, along one axis.
-    fn moments<P: Profile>(filter: &Separable<P>) -> [f64; 2] {
+    fn moments<P: FilterProfile>(filter: &Separable<P>) -> [f64; 2] {
         // By midpoints within each cell, because weights have kinks between cells.
         const STEPS: u32 = 1024;
         let mut moments = [0.0; 2];
@@ -149,7 +149,7 @@ mod tests {
         moments
     }
 
-    fn assert_moments<P: Profile>(profile: P) {
+    fn assert_moments<P: FilterProfile>(profile: P) {
         let filter = Separable::new(profile);
         let [mean, first] = moments(&filter);
         // The midpoint rule has an error of at most 1/24 of the squared step times the second derivative.

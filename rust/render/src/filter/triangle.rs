@@ -1,6 +1,6 @@
 //! The triangle (tent) filter.
 
-use super::{Profile, length};
+use super::{FilterProfile, length};
 
 /// A linear falloff from the center to 0 at the radius; with a radius of one pixel, linear interpolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ impl Triangle {
     }
 }
 
-impl Profile for Triangle {
+impl FilterProfile for Triangle {
     fn radius(&self) -> f64 {
         self.radius
     }
