@@ -1,7 +1,7 @@
 //! Direct light.
 
 use super::transport::Settings;
-use super::volumes::Volumes;
+use super::volumes::VolumetricPath;
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 
@@ -25,7 +25,7 @@ impl Integrator for Direct {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let (light_samples, splits) = (self.light_samples.max(1), self.surface_samples.max(1));
         if job.scene.plan().needs().media {
-            return Volumes { light_samples, splits, ..Volumes::dimmed(1) }.begin(job);
+            return VolumetricPath { light_samples, splits, ..VolumetricPath::dimmed(1) }.begin(job);
         }
         Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.begin(job, cancel)
     }

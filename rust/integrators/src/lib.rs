@@ -36,7 +36,7 @@ mod whitted;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};
 pub use beam_traced::BeamTraced;
-pub use bidirectional::{Alone, Bidirectional, Merge};
+pub use bidirectional::{Bidirectional, Merge, PathStrategy};
 pub use camera_samples::{CameraSample, CameraSamples};
 pub use cone_traced::ConeTraced;
 pub use direct::Direct;

@@ -2,7 +2,7 @@
 
 use super::light_paths::{LightPaths, Limits};
 use super::transport::Settings;
-use super::volumes::{Counting, MediaLightPaths, Volumes};
+use super::volumes::{Counting, MediaLightPaths, VolumetricPath};
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};
@@ -30,7 +30,7 @@ impl Default for LightTraced {
 impl Integrator for LightTraced {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let seen = if job.scene.plan().needs().media {
-            Volumes::dimmed(0).begin(job)
+            VolumetricPath::dimmed(0).begin(job)
         } else {
             Settings::path(Some(0), u32::MAX).begin(job, cancel)
         };

@@ -1,7 +1,7 @@
 //! Path tracing.
 
 use super::transport::{Settings, can_share};
-use super::volumes::{self, Volumes};
+use super::volumes::{self, VolumetricPath};
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_scene::Scene;
@@ -56,7 +56,7 @@ impl Integrator for Path {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         if job.scene.plan().needs().media {
             let shares = self.patch(job.scene) > 1;
-            return Volumes { shares, ..Volumes::path(self.max_depth, self.roulette_depth) }.begin(job);
+            return VolumetricPath { shares, ..VolumetricPath::path(self.max_depth, self.roulette_depth) }.begin(job);
         }
         self.settings(job.scene).begin(job, cancel)
     }

@@ -2,7 +2,7 @@
 
 use super::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Visitor};
 use super::nesting::MediumStack;
-use super::volumes::{Drifting, MediaLightWalk, MediaVisitor, Numbers, Point, Vertex};
+use super::volumes::{Drifting, MediaLightWalk, MediaVisitor, PathNumbers, Point, Vertex};
 use raywright_base::math::DVec3;
 use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
@@ -65,7 +65,8 @@ pub fn photons(
     let follow = |chunk: u32| {
         let paths = chunk * TOGETHER..count.min((chunk + 1).saturating_mul(TOGETHER));
         let mut samplers: Vec<Sampler> = paths.clone().map(|path| Sampler::new(seed, path, 0)).collect();
-        let mut seen = Seen { scene, first: paths.start, share: 1.0 / f64::from(count), ..Seen::new(scene) };
+        let mut seen =
+            PhotonRecorder { scene, first: paths.start, share: 1.0 / f64::from(count), ..PhotonRecorder::new(scene) };
         if cancel.is_raised() {
             return seen.found;
         }
@@ -88,7 +89,7 @@ pub fn photons(
 }
 
 /// A visitor that records photons.
-struct Seen<'a> {
+struct PhotonRecorder<'a> {
     scene: &'a Scene,
     /// Index of the first path, and the share of the light per path.
     first: u32,
@@ -98,7 +99,7 @@ struct Seen<'a> {
     found: Photons,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> PhotonRecorder<'a> {
     fn new(scene: &'a Scene) -> Self {
         Self { scene, first: 0, share: 1.0, chains: Vec::new(), found: Photons::default() }
     }
@@ -141,7 +142,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-impl<'a> Visitor<'a> for Seen<'a> {
+impl<'a> Visitor<'a> for PhotonRecorder<'a> {
     fn set_out(&mut self, path: &Flying, _: &EmissionSample) {
         self.begin(path.number, path.flux);
     }
@@ -156,12 +157,12 @@ impl<'a> Visitor<'a> for Seen<'a> {
     }
 }
 
-impl<'a> MediaVisitor<'a> for Seen<'a> {
+impl<'a> MediaVisitor<'a> for PhotonRecorder<'a> {
     fn set_out(&mut self, path: &Drifting, _: &EmissionSample) {
         self.begin(path.number, path.flux());
     }
 
-    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut Numbers, _: Dimensions, _: &Cancel) {
+    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
         let last = [path.is_sharp, path.is_adrift];
         match &at.point {
             Point::Surface { arrived, .. } => {

@@ -29,7 +29,7 @@ pub struct Radiosity {
 
 impl Integrator for Radiosity {
     fn begin<'a>(&'a self, job: Job<'a>, _cancel: &Cancel) -> Box<dyn Session + 'a> {
-        Box::new(Shown { solution: self, scene: job.scene })
+        Box::new(RadiositySession { solution: self, scene: job.scene })
     }
 
     fn objection(&self, scene: &Scene, _adaptive: bool) -> Option<String> {
@@ -60,18 +60,18 @@ impl Integrator for Radiosity {
 }
 
 /// A solution with its scene.
-struct Shown<'a> {
+struct RadiositySession<'a> {
     solution: &'a Radiosity,
     scene: &'a Scene,
 }
 
-impl Session for Shown<'_> {
+impl Session for RadiositySession<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Looking { shown: self, rays: Vec::new(), hits: Vec::new() })
+        Box::new(RadiosityWorker { shown: self, rays: Vec::new(), hits: Vec::new() })
     }
 }
 
-impl Shown<'_> {
+impl RadiositySession<'_> {
     fn radiance(&self, ray: &Ray, hit: &Hit) -> Rgb {
         if !hit.is_hit() {
             return self.scene.lights().infinite_radiance(ray.direction);
@@ -96,13 +96,13 @@ impl Shown<'_> {
     }
 }
 
-struct Looking<'a> {
-    shown: &'a Shown<'a>,
+struct RadiosityWorker<'a> {
+    shown: &'a RadiositySession<'a>,
     rays: Vec<Ray>,
     hits: Vec<Hit>,
 }
 
-impl Worker for Looking<'_> {
+impl Worker for RadiosityWorker<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         if cancel.is_raised() {
             return;

@@ -16,7 +16,7 @@ pub struct Transparent<'i>(pub &'i dyn Integrator);
 
 impl Integrator for Transparent<'_> {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        Box::new(Shown { scene: job.scene, inner: self.0.begin(job, cancel) })
+        Box::new(TransparentSession { scene: job.scene, inner: self.0.begin(job, cancel) })
     }
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
@@ -40,12 +40,12 @@ impl Integrator for Transparent<'_> {
     }
 }
 
-struct Shown<'a> {
+struct TransparentSession<'a> {
     scene: &'a Scene,
     inner: Box<dyn Session + 'a>,
 }
 
-impl Session for Shown<'_> {
+impl Session for TransparentSession<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
         Box::new(Showing { inner: self.inner.worker(), first: FirstSeen::new(self.scene), seen: Vec::new() })
     }

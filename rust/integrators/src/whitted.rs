@@ -1,7 +1,7 @@
 //! Whitted ray tracing, without recursion.
 
 use super::transport::{Follow, Settings};
-use super::volumes::{Onwards, Volumes};
+use super::volumes::{Onwards, VolumetricPath};
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -34,8 +34,8 @@ impl Integrator for Whitted {
         if job.scene.plan().needs().media {
             let (onwards, ambient, least) = (Onwards::DeltaLobes, self.ambient, self.contribution);
             let light_samples = self.light_samples.max(1);
-            let settings = Volumes::dimmed(self.max_depth);
-            return Volumes { onwards, ambient, least, light_samples, ..settings }.begin(job);
+            let settings = VolumetricPath::dimmed(self.max_depth);
+            return VolumetricPath { onwards, ambient, least, light_samples, ..settings }.begin(job);
         }
         Settings {
             follow: Follow::DeltaLobes,

@@ -53,7 +53,7 @@ pub(super) struct Beam {
 
 /// A face in a beam.
 #[derive(Clone, Debug)]
-pub(super) struct Seen {
+pub(super) struct VisibleFace {
     pub primitive: u32,
     /// Its visible part on the film.
     pub outline: Convex,
@@ -128,7 +128,7 @@ impl Beam {
     }
 
     /// Project a face; return `None` if it is not visible.
-    pub fn see(&self, geometry: &Geometry, primitive: u32) -> Option<Seen> {
+    pub fn see(&self, geometry: &Geometry, primitive: u32) -> Option<VisibleFace> {
         let corners = geometry.corners(primitive);
         let normal = geometry.normal(primitive);
         let distance = normal.dot(corners[0] - self.apex);
@@ -156,6 +156,6 @@ impl Beam {
         let high = outline.iter().copied().reduce(DVec2::max)?;
         let nearest = outline.iter().map(|at| nearness.dot(at.extend(1.0))).fold(0.0, f64::max);
         let sides = sides(&outline, ON_LINE);
-        Some(Seen { primitive, outline, sides, bounds: [low, high], nearness, nearest })
+        Some(VisibleFace { primitive, outline, sides, bounds: [low, high], nearness, nearest })
     }
 }

@@ -14,7 +14,7 @@ use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene, SurfaceInteraction};
-use tree::Tree;
+use tree::BeamTree;
 
 /// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): the whole view is one beam instead of
 /// rays. The faces in it divide it into polygons. Flat mirrors reflect these as beams from the mirror image of the eye,
@@ -47,7 +47,7 @@ const MOST_LIGHTS: usize = u64::BITS as usize;
 
 impl Integrator for BeamTraced {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        let tree = job.camera.as_perspective().map(|camera| Tree::new(&job, camera, self, cancel));
+        let tree = job.camera.as_perspective().map(|camera| BeamTree::new(&job, camera, self, cancel));
         let size = [job.camera.width(), job.camera.height()];
         let blocks = tree.as_ref().map_or_else(Vec::new, |tree| tree.by_block(size, Film::SIDE));
         Box::new(Film { job, ambient: self.ambient, tree, blocks })
@@ -152,7 +152,7 @@ struct Film<'a> {
     job: Job<'a>,
     ambient: Rgb,
     /// `None` for cameras that beams do not support.
-    tree: Option<Tree>,
+    tree: Option<BeamTree>,
     /// Pieces in each block of pixels.
     blocks: Vec<Vec<u32>>,
 }
@@ -194,14 +194,14 @@ impl Film<'_> {
 
 impl Session for Film<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Looking(self))
+        Box::new(BeamWorker(self))
     }
 }
 
 /// The worker that shades pixels.
-struct Looking<'a>(&'a Film<'a>);
+struct BeamWorker<'a>(&'a Film<'a>);
 
-impl Worker for Looking<'_> {
+impl Worker for BeamWorker<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         for (sample, radiance) in samples.iter().zip(radiance) {
             if cancel.is_raised() {

@@ -6,8 +6,8 @@
 //! straight. Here the factor is exact for the central ray of a part, and parts are split until the error of all rays is
 //! within the tolerance.
 
-use super::beam::{Beam, ON_LINE, Origin, Seen};
-use super::shading::Met;
+use super::beam::{Beam, ON_LINE, Origin, VisibleFace};
+use super::shading::FilmHit;
 use crate::Job;
 use raywright_base::math::convex::{Convex, HalfPlane, centroid, cut};
 use raywright_base::math::{DVec2, DVec3};
@@ -30,7 +30,7 @@ pub(super) struct Onward<'a> {
     pub beam: &'a Beam,
     /// Index of the beam.
     pub number: usize,
-    pub seen: &'a Seen,
+    pub seen: &'a VisibleFace,
     /// Maximum error of refracted rays, in pixels, as seen from afar.
     pub tolerance: f64,
 }
@@ -61,13 +61,13 @@ impl Onward<'_> {
         next
     }
 
-    fn met(&self, at: DVec2) -> Met {
-        Met::new(self.job, self.beam, self.seen.primitive, self.seen.nearness, at)
+    fn met(&self, at: DVec2) -> FilmHit {
+        FilmHit::new(self.job, self.beam, self.seen.primitive, self.seen.nearness, at)
     }
 
     /// Return the reflected beam or, with a stretch, the transmitted one.
     fn beam(&self, part: Convex, through: Option<f64>) -> Beam {
-        let &Seen { primitive, nearness, .. } = self.seen;
+        let &VisibleFace { primitive, nearness, .. } = self.seen;
         let origin = Origin { beam: self.number, primitive, nearness, through };
         self.beam.goes_on(part, self.job.scene.geometry(), origin)
     }

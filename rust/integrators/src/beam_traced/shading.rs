@@ -7,14 +7,14 @@ use raywright_optics::{BsdfSample, Rgb};
 use raywright_scene::{Interaction, SurfaceInteraction};
 
 /// The intersection of a film position's ray with a face.
-pub(super) struct Met {
+pub(super) struct FilmHit {
     ray: Ray,
     hit: Hit,
     width: f64,
     pub here: SurfaceInteraction,
 }
 
-impl Met {
+impl FilmHit {
     /// Intersect a beam's ray with a face of given nearness.
     pub fn new(job: &Job, beam: &Beam, primitive: u32, nearness: DVec3, at: DVec2) -> Self {
         let geometry = job.scene.geometry();

@@ -1,9 +1,9 @@
 //! The beam tree, whose leaves are pieces of the film.
 
 use super::BeamTraced;
-use super::beam::{Beam, LEAST, Origin, Seen};
+use super::beam::{Beam, LEAST, Origin, VisibleFace};
 use super::onward::Onward;
-use super::shading::Met;
+use super::shading::FilmHit;
 use super::shadow::Shadows;
 use super::visible::visible;
 use crate::Job;
@@ -18,7 +18,7 @@ use std::ops::Range;
 
 /// A piece of the film: one face, seen through a sequence of mirrors and lit by a set of lights.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
+pub(super) struct FilmPiece {
     pub outline: Convex,
     /// Corners of the bounding rectangle.
     pub bounds: [DVec2; 2],
@@ -30,15 +30,15 @@ pub(super) struct Piece {
 }
 
 /// All beams of a picture.
-pub(super) struct Tree {
+pub(super) struct BeamTree {
     beams: Vec<Beam>,
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<FilmPiece>,
 }
 
 /// Pieces and next beams of one face in one beam.
 #[derive(Default)]
-struct Found {
-    pieces: Vec<Piece>,
+struct FaceBeams {
+    pieces: Vec<FilmPiece>,
     next: Vec<Beam>,
 }
 
@@ -48,7 +48,7 @@ const LEAST_FOLLOWED: f64 = 1e-10;
 /// Faces per task of a thread.
 const TOGETHER: usize = 256;
 
-impl Tree {
+impl BeamTree {
     /// Trace the view of a camera.
     pub fn new(job: &Job, camera: &Perspective, settings: &BeamTraced, cancel: &Cancel) -> Self {
         let scene = job.scene;
@@ -79,19 +79,20 @@ impl Tree {
         number: usize,
         settings: &BeamTraced,
         cancel: &Cancel,
-    ) -> Vec<Found> {
+    ) -> Vec<FaceBeams> {
         let (beam, geometry) = (&self.beams[number], job.scene.geometry());
         let follows = beam.bounce + 1 < settings.max_depth;
         let see = |faces: Range<usize>| faces.filter_map(|face| beam.see(geometry, face as u32)).collect::<Vec<_>>();
-        let mut seen: Vec<Seen> = parallel::map_chunks(geometry.count(), TOGETHER, see).into_iter().flatten().collect();
+        let mut seen: Vec<VisibleFace> =
+            parallel::map_chunks(geometry.count(), TOGETHER, see).into_iter().flatten().collect();
         // Near faces hide most.
         seen.sort_by(|a, b| b.nearest.total_cmp(&a.nearest).then(a.primitive.cmp(&b.primitive)));
         let one = |which: usize| {
-            let mut found = Found::default();
+            let mut found = FaceBeams::default();
             if cancel.is_raised() {
                 return found;
             }
-            let Seen { primitive, nearness, .. } = seen[which];
+            let VisibleFace { primitive, nearness, .. } = seen[which];
             let onward = Onward { job, beam, number, seen: &seen[which], tolerance: settings.tolerance };
             for part in visible(&seen, which, cancel) {
                 if follows && area(&part) > LEAST_FOLLOWED {
@@ -114,7 +115,14 @@ impl Tree {
                 for (outline, lit) in pieces {
                     let low = outline.iter().copied().reduce(DVec2::min).unwrap_or_default();
                     let high = outline.iter().copied().reduce(DVec2::max).unwrap_or_default();
-                    found.pieces.push(Piece { outline, bounds: [low, high], beam: number, primitive, nearness, lit });
+                    found.pieces.push(FilmPiece {
+                        outline,
+                        bounds: [low, high],
+                        beam: number,
+                        primitive,
+                        nearness,
+                        lit,
+                    });
                 }
             }
             found
@@ -123,12 +131,12 @@ impl Tree {
     }
 
     /// Return the radiance of a piece at a film position.
-    pub fn radiance(&self, job: &Job, ambient: Rgb, piece: &Piece, at: DVec2) -> Rgb {
+    pub fn radiance(&self, job: &Job, ambient: Rgb, piece: &FilmPiece, at: DVec2) -> Rgb {
         let mut beam = &self.beams[piece.beam];
-        let mut light = Met::new(job, beam, piece.primitive, piece.nearness, at).light(job, piece.lit, ambient);
+        let mut light = FilmHit::new(job, beam, piece.primitive, piece.nearness, at).light(job, piece.lit, ambient);
         while let Some(Origin { beam: before, primitive, nearness, through }) = beam.origin {
             beam = &self.beams[before];
-            light *= Met::new(job, beam, primitive, nearness, at).share(through.is_some());
+            light *= FilmHit::new(job, beam, primitive, nearness, at).share(through.is_some());
         }
         light
     }

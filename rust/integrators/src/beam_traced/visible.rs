@@ -5,12 +5,12 @@
 //! outline, after Weiler and Atherton ("Hidden Surface Removal Using Polygon Area Sorting", 1977). No sorting is
 //! needed, and intersecting faces need no special case.
 
-use super::beam::{LEAST, Seen};
+use super::beam::{LEAST, VisibleFace};
 use raywright_base::math::convex::{Convex, HalfPlane, area, take_out};
 use raywright_base::workers::Cancel;
 
 /// Return the visible part of a face, as disjoint convex polygons.
-pub(super) fn visible(all: &[Seen], which: usize, cancel: &Cancel) -> Vec<Convex> {
+pub(super) fn visible(all: &[VisibleFace], which: usize, cancel: &Cancel) -> Vec<Convex> {
     let mine = &all[which];
     let mut parts = vec![mine.outline.clone()];
     for (number, other) in all.iter().enumerate() {
@@ -33,13 +33,13 @@ pub(super) fn visible(all: &[Seen], which: usize, cancel: &Cancel) -> Vec<Convex
 }
 
 /// Return whether the bounding rectangles of two faces overlap.
-fn overlap(a: &Seen, b: &Seen) -> bool {
+fn overlap(a: &VisibleFace, b: &VisibleFace) -> bool {
     a.bounds[0].cmplt(b.bounds[1]).all() && b.bounds[0].cmplt(a.bounds[1]).all()
 }
 
 /// Return the half-plane where another face is in front; `None` if nowhere, and no half-plane if everywhere. Of
 /// coplanar faces the one with the lower index is in front.
-fn nearer(mine: &Seen, other: &Seen) -> Option<Option<HalfPlane>> {
+fn nearer(mine: &VisibleFace, other: &VisibleFace) -> Option<Option<HalfPlane>> {
     let line = other.nearness - mine.nearness;
     let size = other.nearness.abs() + mine.nearness.abs();
     let (mut least, mut most, mut noise) = (f64::INFINITY, f64::NEG_INFINITY, 0.0f64);

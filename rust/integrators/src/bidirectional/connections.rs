@@ -1,6 +1,6 @@
 //! Connections of camera paths to lights and to light vertices.
 
-use super::Alone;
+use super::PathStrategy;
 use super::eye::{EyePath, EyeVertex};
 use super::light_vertices::LightVertex;
 use super::worker::BidirectionalWorker;
@@ -78,7 +78,7 @@ impl<'a> BidirectionalWorker<'a> {
 
     /// Return the weight of a strategy if only one is shown: 1 or 0.
     pub(super) fn full(&self, light: u32, camera: u32) -> f64 {
-        let way = Alone { vertices: [light, camera], merges: false };
+        let way = PathStrategy { vertices: [light, camera], merges: false };
         if self.alone == Some(way) { 1.0 } else { 0.0 }
     }
 

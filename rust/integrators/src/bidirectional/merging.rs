@@ -3,7 +3,7 @@
 use super::eye::{EyePath, EyeVertex};
 use crate::light_paths::{Arrived, Dimensions, Flying, Limits, Onward, Partial, Partials, Visitor, of_merged};
 use crate::nesting::MediumStack;
-use crate::photon_map::{Counted, HashedGrid, Kernel, Sending, Series, Spread, StoredPhoton, cover, flown};
+use crate::photon_map::{HashedGrid, Kernel, MapSchedule, PhotonCount, Sending, Series, StoredPhoton, cover, flown};
 use crate::{Job, is_matt};
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
@@ -39,7 +39,7 @@ pub(super) struct MergeMap {
     places: HashedGrid,
 }
 
-impl Counted for MergeMap {
+impl PhotonCount for MergeMap {
     fn count(&self) -> usize {
         self.photons.len()
     }
@@ -63,7 +63,7 @@ impl<'a> Merging<'a> {
         const ALPHA: f64 = 2.0 / 3.0;
         let pixels = job.camera.width().saturating_mul(job.camera.height());
         let photons = merge.photons.unwrap_or(pixels.clamp(LEAST, MOST));
-        let spread = Spread::Progressive { alpha: ALPHA, mean_of: merge.mean_of };
+        let spread = MapSchedule::Progressive { alpha: ALPHA, mean_of: merge.mean_of };
         let series = Series::new(job, Sending { paths: photons, limits, caustic: false, spread });
         let radius = merge.radius.unwrap_or_else(|| series.suitable(Some(emitters), cancel).disk);
         Self { job, series: series.with_radius(radius), photons, scale: merge.scale }

@@ -40,12 +40,12 @@ pub struct Bidirectional {
     /// Vertex merging, if any.
     pub merge: Option<Merge>,
     /// The one strategy to show unweighted, if any.
-    pub alone: Option<Alone>,
+    pub alone: Option<PathStrategy>,
 }
 
 /// A strategy of sampling paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Alone {
+pub struct PathStrategy {
     /// Number of vertices from the light, and from the camera, which counts as the first.
     pub vertices: [u32; 2],
     /// True if the last vertices of both ends are merged.
@@ -102,7 +102,7 @@ struct Bidirection<'a> {
     /// `None` without lights.
     emitters: Option<Emitters<'a>>,
     merging: Option<Merging<'a>>,
-    alone: Option<Alone>,
+    alone: Option<PathStrategy>,
 }
 
 impl Bidirection<'_> {

@@ -1,6 +1,6 @@
 //! Bidirectional path tracing against closed forms, and strategies against each other.
 
-use super::{Alone, Bidirectional, Merge};
+use super::{Bidirectional, Merge, PathStrategy};
 use crate::{CameraSample, Integrator, Job, Splat};
 use raywright_base::cases;
 use raywright_base::math::DVec3;
@@ -79,7 +79,7 @@ fn each_way_alone_finds_all_paths_of_its_length() {
         // A point light is never hit.
         for camera_vertices in 1..=bounces + 1 {
             let light_vertices = bounces + 2 - camera_vertices;
-            let alone = Some(Alone { vertices: [light_vertices, camera_vertices], merges: false });
+            let alone = Some(PathStrategy { vertices: [light_vertices, camera_vertices], merges: false });
             let way = Bidirectional { max_depth: Some(bounces), roulette_depth: 2, merge: None, alone };
             let (mean, error) = mean(&scene, &camera, &way, 200);
             assert!(error < 0.06 * expected, "{alone:?}: {error}");
@@ -106,7 +106,7 @@ fn each_way_alone_finds_light_of_a_surface() {
             if bounces == 0 && light_vertices > 0 {
                 continue;
             }
-            let alone = Some(Alone { vertices: [light_vertices, camera_vertices], merges: false });
+            let alone = Some(PathStrategy { vertices: [light_vertices, camera_vertices], merges: false });
             let way = Bidirectional { max_depth: Some(bounces), roulette_depth: 2, merge: None, alone };
             let (mean, error) = mean(&scene, &camera, &way, 200);
             assert!(error < 0.06 * expected, "{alone:?}: {error}");
@@ -130,7 +130,7 @@ fn merges_alone_find_all_paths_of_their_length() {
     for bounces in cases::every(2, 1, 2..=4u32) {
         let expected = 0.5f64.powi(bounces as i32);
         for light_vertices in 3..=bounces + 1 {
-            let alone = Some(Alone { vertices: [light_vertices, bounces + 3 - light_vertices], merges: true });
+            let alone = Some(PathStrategy { vertices: [light_vertices, bounces + 3 - light_vertices], merges: true });
             let way = Bidirectional { max_depth: Some(bounces), roulette_depth: 9, merge, alone };
             let (mean, error) = mean(&scene, &camera, &way, 100);
             assert!(error < 0.02 * expected, "{alone:?}: {error}");

@@ -3,7 +3,7 @@
 use super::eye::{EyePath, EyeQueue, EyeVertex};
 use super::light_vertices::LightVertices;
 use super::merging::{MergeMap, Merging};
-use super::{Alone, Bidirection};
+use super::{Bidirection, PathStrategy};
 use crate::dimensions::Dimensions;
 use crate::light_paths::{Arrived, LightWalk, Limits, Partial, Partials, Times};
 use crate::nesting::MediumStack;
@@ -25,7 +25,7 @@ pub(super) struct BidirectionalWorker<'a> {
     job: Job<'a>,
     emitters: Option<&'a Emitters<'a>>,
     limits: Limits,
-    pub(super) alone: Option<Alone>,
+    pub(super) alone: Option<PathStrategy>,
     /// Number of light paths per camera sample of the whole picture.
     paths: f64,
     /// True if samples are spread over time.
@@ -143,7 +143,9 @@ impl<'a> BidirectionalWorker<'a> {
         let alone = match self.alone {
             None => None,
             // The merged vertex belongs to both subpaths. The light and this surface are not bounces of the photon.
-            Some(Alone { vertices: [light, camera], merges: true }) if camera == path.bounce + 2 && light > 2 => {
+            Some(PathStrategy { vertices: [light, camera], merges: true })
+                if camera == path.bounce + 2 && light > 2 =>
+            {
                 Some(light - 2)
             }
             Some(_) => return Rgb::ZERO,

@@ -34,7 +34,7 @@ impl Cone {
 }
 
 /// The intersection of a cone with a surface.
-pub(super) struct Meeting {
+pub(super) struct ConeHit {
     pub ray: Ray,
     pub hit: Hit,
     /// Cone diameter there.
@@ -42,7 +42,7 @@ pub(super) struct Meeting {
     pub here: SurfaceInteraction,
 }
 
-impl Meeting {
+impl ConeHit {
     /// Intersect a cone's ray in a direction with a primitive; `None` for a miss.
     pub fn new(job: &Job, cone: &Cone, primitive: u32, direction: DVec3) -> Option<Self> {
         let ray = Ray::new(cone.apex, direction);
@@ -75,7 +75,7 @@ impl Meeting {
         self.here.ambient(job.scene, &self.ray, &self.hit, self.width, 1.0) * radiance
     }
 
-    /// Return the part of the albedo of [`Meeting::ambient`] that is due to rough metals, for which cones are traced.
+    /// Return the part of the albedo of [`ConeHit::ambient`] that is due to rough metals, for which cones are traced.
     pub fn dull_albedo(&self) -> Rgb {
         let mut albedo = Rgb::ZERO;
         self.here.bsdf().dull_lobes(|weight, metal| albedo += weight * metal.albedo());

@@ -1,6 +1,6 @@
 //! Direct light from lamps, with soft shadows by cones.
 
-use super::cone::Meeting;
+use super::cone::ConeHit;
 use crate::Job;
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Ray};
@@ -23,7 +23,7 @@ pub(super) fn lamps(job: &Job) -> Vec<Lamp> {
 }
 
 /// The solid angle of a lamp from a point.
-struct Sight {
+struct LampCone {
     direction: DVec3,
     distance: f64,
     /// Half angle of the equivalent cone, in radians.
@@ -35,14 +35,14 @@ struct Sight {
 impl Lamp {
     /// Return the lamp's cone from a point; `None` if it is not visible. A face is replaced by a cone about its center
     /// of the same solid angle.
-    fn seen_from(&self, job: &Job, from: DVec3) -> Option<Sight> {
+    fn seen_from(&self, job: &Job, from: DVec3) -> Option<LampCone> {
         let geometry = job.scene.geometry();
         if let Some((center, radius)) = geometry.shape(self.primitive).and_then(|shape| shape.ball()) {
             let way = center - from;
             let distance = way.length();
             let sine = radius / distance;
             // For a sphere above the horizon, π sin² times the cosine to its center is exact.
-            return (sine < 1.0).then(|| Sight {
+            return (sine < 1.0).then(|| LampCone {
                 direction: way / distance,
                 distance,
                 angle: sine.asin(),
@@ -57,12 +57,12 @@ impl Lamp {
         let solid_angle = 2.0 * a.dot(b.cross(c)).abs().atan2(below);
         let angle = 2.0 * (solid_angle / (4.0 * std::f64::consts::PI)).sqrt().asin();
         let is_seen = distance > 0.0 && angle > 0.0 && angle < std::f64::consts::FRAC_PI_2;
-        is_seen.then(|| Sight { direction: way / distance, distance, angle, solid_angle })
+        is_seen.then(|| LampCone { direction: way / distance, distance, angle, solid_angle })
     }
 }
 
 /// Return the reflected light of all lamps and lights.
-pub(super) fn light(job: &Job, coverage: &Coverage, lamps: &[Lamp], met: &Meeting) -> Rgb {
+pub(super) fn light(job: &Job, coverage: &Coverage, lamps: &[Lamp], met: &ConeHit) -> Rgb {
     let mut light = Rgb::ZERO;
     let here = &met.here;
     let receiver = here.light_context();
@@ -96,7 +96,7 @@ pub(super) fn light(job: &Job, coverage: &Coverage, lamps: &[Lamp], met: &Meetin
 }
 
 /// Return true if light from a single direction is unoccluded.
-fn is_free(job: &Job, met: &Meeting, drawn: &LightSample) -> bool {
+fn is_free(job: &Job, met: &ConeHit, drawn: &LightSample) -> bool {
     let origin = met.here.ray_origin();
     let ray = match &drawn.source {
         Some(source) => origin.segment(source),

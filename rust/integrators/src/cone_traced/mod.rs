@@ -4,7 +4,7 @@ mod cone;
 mod lamps;
 
 use super::{CameraSample, Integrator, Job, Session, Worker};
-use cone::{Cone, Meeting};
+use cone::{Cone, ConeHit};
 use lamps::{Lamp, lamps, light};
 use raywright_base::math::DVec3;
 use raywright_base::workers::Cancel;
@@ -112,7 +112,7 @@ impl Tracing<'_> {
             let Some(solid) = cone.solid() else { continue };
             let counted = ConeFilter { beyond: cone.beyond, ..ConeFilter::default() };
             coverage.meet(&solid, counted, |covering| {
-                let Some(met) = Meeting::new(&self.job, &cone, covering.primitive, covering.direction) else {
+                let Some(met) = ConeHit::new(&self.job, &cone, covering.primitive, covering.direction) else {
                     return;
                 };
                 if !cone.is_dull {
@@ -143,14 +143,14 @@ impl Tracing<'_> {
 
 impl Session for Tracing<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Looking(self))
+        Box::new(ConeWorker(self))
     }
 }
 
 /// The worker that shades pixels.
-struct Looking<'a>(&'a Tracing<'a>);
+struct ConeWorker<'a>(&'a Tracing<'a>);
 
-impl Worker for Looking<'_> {
+impl Worker for ConeWorker<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         for (sample, radiance) in samples.iter().zip(radiance) {
             if cancel.is_raised() {

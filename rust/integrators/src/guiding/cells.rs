@@ -47,7 +47,7 @@ struct Leaf {
 
 /// Guiding data of a cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cell<'a> {
+pub(super) struct GuidingCell<'a> {
     /// Lobes toward the light, at least one and at most [`LOBES`], whose probabilities sum to 1; and their number.
     pub lobes: &'a [LobeLanes],
     pub count: usize,
@@ -144,7 +144,7 @@ impl Cells {
 
     /// Return the cell of a place; `None` far from any photon.
     #[inline]
-    pub fn find(&self, place: DVec3) -> Option<Cell<'_>> {
+    pub fn find(&self, place: DVec3) -> Option<GuidingCell<'_>> {
         // Depths are similar for all places but paths are unpredictable, so the descent is free of data-dependent
         // branches.
         let coordinates = [place.x, place.y, place.z, 0.0];
@@ -157,7 +157,7 @@ impl Cells {
         let leaf = &self.leaves[self.nodes[node].second as usize];
         let inside = place.cmpge(leaf.min).all() && place.cmple(leaf.max).all();
         let &Leaf { share, gain, rarity, count, .. } = leaf;
-        inside.then(|| Cell { lobes: &self.lobes[leaf.lobes.clone()], count, share, gain, rarity })
+        inside.then(|| GuidingCell { lobes: &self.lobes[leaf.lobes.clone()], count, share, gain, rarity })
     }
 }
 

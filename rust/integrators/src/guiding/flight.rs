@@ -31,7 +31,7 @@ pub(super) fn photons(scene: &Scene, cancel: &Cancel) -> Option<Vec<Photon>> {
         return Some(Vec::new());
     }
     let Some(targets) = Targets::new(scene) else { return Some(Vec::new()) };
-    let part = |part| (!cancel.is_raised()).then(|| Flight::new(scene, &targets, part).follow(scene));
+    let part = |part| (!cancel.is_raised()).then(|| FlyingPhotons::new(scene, &targets, part).follow(scene));
     let parts = parallel::map((SENT / TOGETHER) as usize, |i| part(i as u32));
     let parts: Option<Vec<Vec<Photon>>> = parts.into_iter().collect();
     parts.map(|parts| parts.concat())
@@ -125,7 +125,7 @@ fn area(geometry: &Geometry, primitive: u32) -> f64 {
 
 /// Photons in flight, and their next rays.
 #[derive(Default)]
-struct Flight {
+struct FlyingPhotons {
     rays: Vec<Ray>,
     flying: Vec<Flying>,
 }
@@ -145,7 +145,7 @@ struct Flying {
     matt: u32,
 }
 
-impl Flight {
+impl FlyingPhotons {
     /// Start one batch of the photons.
     fn new(scene: &Scene, targets: &Targets, part: u32) -> Self {
         let mut all = Self::default();

@@ -1,20 +1,20 @@
 //! Guided sampling of directions at a place.
 
-use super::cells::Cell;
+use super::cells::GuidingCell;
 use raywright_base::math::{DVec3, LANES};
 use raywright_base::simd::Level;
 
 /// The distribution of guided directions at a place: a mixture of cones to spheres.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalGuide<'a> {
-    cell: Cell<'a>,
+    cell: GuidingCell<'a>,
     place: DVec3,
 }
 
 impl<'a> LocalGuide<'a> {
     /// Make the distribution at a place in a cell.
     #[inline]
-    pub(super) fn new(cell: Cell<'a>, place: DVec3) -> Self {
+    pub(super) fn new(cell: GuidingCell<'a>, place: DVec3) -> Self {
         Self { cell, place }
     }
 
@@ -39,7 +39,7 @@ impl<'a> LocalGuide<'a> {
     /// Sample a direction: `choice` selects a sphere and `u` a direction to it, all uniform in [0, 1).
     #[inline]
     pub fn sample(&self, mut choice: f64, u: [f64; 2]) -> DVec3 {
-        let Cell { lobes, count, .. } = self.cell;
+        let GuidingCell { lobes, count, .. } = self.cell;
         // Probabilities sum to 1 except for rounding.
         let last = count - 1;
         let mut chosen = last;

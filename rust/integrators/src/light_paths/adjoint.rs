@@ -38,14 +38,14 @@ pub(crate) struct Arrived<'a> {
     clippy::large_enum_variant,
     reason = "it lives on the stack, and a box would be allocated at every connection"
 )]
-pub(crate) enum Met<'a> {
+pub(crate) enum AdjointInteraction<'a> {
     /// The same BSDF with another direction.
     Alike(SurfaceInteraction<&'a BsdfMix>),
     /// A new BSDF.
     Anew(SurfaceInteraction),
 }
 
-impl Met<'_> {
+impl AdjointInteraction<'_> {
     /// Evaluate as [`Interaction::evaluate`] does.
     pub fn evaluate(&self, direction: DVec3) -> (Rgb, f64) {
         match self {
@@ -136,18 +136,18 @@ impl<'a> Arrived<'a> {
     }
 
     /// Return the interaction of a ray from a direction and distance, with a given width at this point.
-    pub fn met_from(&self, direction: DVec3, distance: f64, width: f64) -> Met<'_> {
+    pub fn met_from(&self, direction: DVec3, distance: f64, width: f64) -> AdjointInteraction<'_> {
         if width == 0.0
             && let Some(here) = self.here.met_from(direction)
         {
-            return Met::Alike(here);
+            return AdjointInteraction::Alike(here);
         }
         let origin = self.here.position() + direction * distance;
         let ray = Ray { origin, direction: -direction, ..self.ray };
         let hit = Hit { t: distance, ..self.hit };
         let surface = *self.here.surface();
         let gaze = LookupContext { width, waves: self.waves };
-        Met::Anew(SurfaceInteraction::new(self.scene, &ray, &hit, surface, gaze, self.outside))
+        AdjointInteraction::Anew(SurfaceInteraction::new(self.scene, &ray, &hit, surface, gaze, self.outside))
     }
 
     /// Return the direction back along the path's ray.

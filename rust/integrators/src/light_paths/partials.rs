@@ -1,6 +1,6 @@
 //! MIS partials of light paths.
 
-use super::adjoint::{Arrived, Met, Onward};
+use super::adjoint::{AdjointInteraction, Arrived, Onward};
 use super::walk::Flying;
 use super::weights::Partial;
 use crate::is_matt;
@@ -29,14 +29,14 @@ impl LightEnd {
     }
 
     /// Return the partials at the vertex as seen along `met`.
-    fn met(&self, emitters: &Emitters, arrived: &Arrived, met: &Met) -> Partial {
+    fn met(&self, emitters: &Emitters, arrived: &Arrived, met: &AdjointInteraction) -> Partial {
         let Some(departure) = &self.departure else { return self.partial };
         let receiver = met.light_context();
         self.partial.asked(emitters.asked_from(&receiver, departure, arrived.ray.direction, arrived.hit.t))
     }
 
     /// Return [`Partial::others`] as seen along `met`, for a camera path that arrives with a density per area.
-    pub fn others(&self, emitters: &Emitters, arrived: &Arrived, met: &Met, comes: f64) -> f64 {
+    pub fn others(&self, emitters: &Emitters, arrived: &Arrived, met: &AdjointInteraction, comes: f64) -> f64 {
         self.met(emitters, arrived, met).others(comes, met.evaluate(arrived.back()).1)
     }
 }

@@ -5,7 +5,7 @@ use super::kernel::Kernel;
 use super::volume_photon::VolumeIndex;
 use crate::nesting::MediumStack;
 use crate::transport::Visit;
-use crate::volumes::{Filled, Met, Scattering, meet};
+use crate::volumes::{ClassifiedHit, Filled, Scattering, meet};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::sampling::{Sampler, warp};
 use raywright_optics::Rgb;
@@ -84,7 +84,9 @@ pub(super) fn room(
                 return 1.0;
             }
             match meet(scene, &ray, &hit, &now) {
-                Met::Passed(beyond, media) if Filled::there(&media) == there => (ray.t_min, now) = (beyond, media),
+                ClassifiedHit::Passed(beyond, media) if Filled::there(&media) == there => {
+                    (ray.t_min, now) = (beyond, media)
+                }
                 _ => break,
             }
             if ray.t_min > ray.t_max {

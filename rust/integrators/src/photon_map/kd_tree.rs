@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 /// Synthesis Using Photon Mapping", 2001). The median point of a range splits it along the longest side of its bounding
 /// box.
 #[derive(Debug)]
-pub struct KdTree {
+pub struct PointKdTree {
     nodes: Vec<Node>,
 }
 
@@ -42,7 +42,7 @@ impl PartialOrd for Near {
     }
 }
 
-impl KdTree {
+impl PointKdTree {
     /// Build the tree. Points are numbered in their order.
     pub fn new(points: impl Iterator<Item = DVec3>) -> Self {
         let node = |(number, point)| Node { point, number, axis: 0 };
@@ -140,7 +140,7 @@ mod tests {
     fn the_nearest_are_found() {
         for count in [0, 1, 2, 3, 10, 1000] {
             let points = points(count);
-            let tree = KdTree::new(points.iter().copied());
+            let tree = PointKdTree::new(points.iter().copied());
             let mut found = Vec::new();
             for place in points.iter().take(40).map(|p| *p + 0.01).chain([DVec3::splat(9.0), DVec3::splat(0.5)]) {
                 for (wanted, most) in [(0, 9.0), (1, f64::INFINITY), (7, f64::INFINITY), (50, 0.02), (2000, 1e9)] {

@@ -2,12 +2,12 @@
 
 use super::photon::StoredPhoton;
 use super::places::Places;
-use super::store::Counted;
+use super::store::PhotonCount;
 use super::volume_photon::{VolumeIndex, VolumePhoton};
 use crate::is_matt;
 use crate::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Times, Visitor};
 use crate::nesting::MediumStack;
-use crate::volumes::{Drifting, MediaLightWalk, MediaVisitor, Numbers, Point, Vertex};
+use crate::volumes::{Drifting, MediaLightWalk, MediaVisitor, PathNumbers, Point, Vertex};
 use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
@@ -17,7 +17,7 @@ use raywright_scene::{Camera, EmissionSample, Emitters, Scene};
 
 /// Parameters for tracing the photons of one map.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Flight {
+pub(crate) struct PhotonPass {
     /// Number of light paths.
     pub paths: u32,
     pub limits: Limits,
@@ -56,7 +56,7 @@ pub(crate) struct Maps {
     pub among: VolumeIndex,
 }
 
-impl Counted for Maps {
+impl PhotonCount for Maps {
     fn count(&self) -> usize {
         self.caustic.photons.len() + self.global.photons.len() + self.among.photons.len()
     }
@@ -75,7 +75,7 @@ pub(super) struct Flown {
 /// `walk` receives a visitor for each chunk. Results depend on the flight alone. After a cancellation they are
 /// incomplete and must be discarded.
 fn chunked<V: Send>(
-    flight: &Flight,
+    flight: &PhotonPass,
     (alone, cancel): (bool, &Cancel),
     visitor: impl Fn(usize) -> V + Sync,
     walk: impl Fn(&mut [Sampler], &mut V) + Sync,
@@ -103,7 +103,7 @@ pub(crate) fn flown<'a, V: Visitor<'a> + Send>(
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
     camera: &'a dyn Camera,
-    flight: &Flight,
+    flight: &PhotonPass,
     (alone, cancel): (bool, &Cancel),
     visitor: impl Fn(usize) -> V + Sync,
 ) -> Vec<V> {
@@ -120,7 +120,7 @@ pub(super) fn fly<'a>(
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
     camera: &'a dyn Camera,
-    flight: &Flight,
+    flight: &PhotonPass,
     alone: bool,
     cancel: &Cancel,
 ) -> Flown {
@@ -193,7 +193,7 @@ impl<'a> MediaVisitor<'a> for Storing {
         self.begin(path.number);
     }
 
-    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut Numbers, _: Dimensions, _: &Cancel) {
+    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
         let bounces = path.bounce - 1;
         if bounces > 0 {
             self.scattered(path.number, path.is_sharp);
@@ -217,8 +217,8 @@ mod tests {
     use super::*;
     use raywright_scene::fixtures::{cornell, furnace};
 
-    fn flight(paths: u32, limits: Limits) -> Flight {
-        Flight { paths, limits, caustic: true, seed: 3, number: 0, time: None, waves: None }
+    fn flight(paths: u32, limits: Limits) -> PhotonPass {
+        PhotonPass { paths, limits, caustic: true, seed: 3, number: 0, time: None, waves: None }
     }
 
     #[test]
@@ -258,7 +258,7 @@ mod tests {
         let [a, b] = [true, false].map(|alone| fly(&scene, &emitters, &camera, &flight, alone, &Cancel::default()));
         let places = |all: &Flown| all.surfaces[1].iter().map(|photon| photon.position).collect::<Vec<_>>();
         assert_eq!(places(&a), places(&b));
-        let other = Flight { number: 1, ..flight };
+        let other = PhotonPass { number: 1, ..flight };
         assert_ne!(places(&fly(&scene, &emitters, &camera, &other, true, &Cancel::default())), places(&a));
     }
 }

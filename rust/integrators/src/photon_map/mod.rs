@@ -23,8 +23,8 @@ pub(super) use grid::HashedGrid;
 pub use kernel::Kernel;
 pub(super) use maps::flown;
 pub(super) use photon::StoredPhoton;
-pub(super) use series::{Sending, Series, Spread};
-pub(super) use store::Counted;
+pub(super) use series::{MapSchedule, Sending, Series};
+pub(super) use store::PhotonCount;
 
 use super::light_paths::Limits;
 use super::{Integrator, Job, Session};
@@ -147,7 +147,7 @@ impl Integrator for PhotonMap {
             paths: self.photons,
             limits: Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth },
             caustic: self.caustic,
-            spread: Spread::Batches { size: job.batch, maps: self.maps.clamp(1, job.batch) },
+            spread: MapSchedule::Batches { size: job.batch, maps: self.maps.clamp(1, job.batch) },
         };
         let Self { nearest, gather, kernel, scale, .. } = *self;
         let recipe = Recipe { sending, nearest, gather, kernel, scale };
@@ -179,7 +179,7 @@ impl Integrator for ProgressivePhotonMap {
             // One map holds all light, with one radius. The caustic photons stay separate so that final gathering can
             // skip them.
             caustic: true,
-            spread: Spread::Progressive { alpha: self.alpha, mean_of: self.mean_of },
+            spread: MapSchedule::Progressive { alpha: self.alpha, mean_of: self.mean_of },
         };
         let Self { gather, kernel, scale, .. } = *self;
         let recipe = Recipe { sending, nearest: None, gather, kernel, scale };

@@ -1,7 +1,7 @@
 //! Photon lookup by position.
 
 use super::grid::HashedGrid;
-use super::kd_tree::KdTree;
+use super::kd_tree::PointKdTree;
 use raywright_base::math::DVec3;
 
 /// A lookup structure for photon positions.
@@ -10,7 +10,7 @@ pub(crate) enum Places {
     /// For lookups of all photons within a radius.
     Grid(HashedGrid),
     /// For lookups of the nearest photons.
-    Tree(KdTree),
+    Tree(PointKdTree),
 }
 
 impl Places {
@@ -18,7 +18,7 @@ impl Places {
     pub fn new(positions: impl ExactSizeIterator<Item = DVec3> + Clone, radius: Option<f64>) -> Self {
         match radius {
             Some(radius) => Self::Grid(HashedGrid::new(positions, radius)),
-            None => Self::Tree(KdTree::new(positions)),
+            None => Self::Tree(PointKdTree::new(positions)),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Lookup radii.
 
-use super::kd_tree::KdTree;
+use super::kd_tree::PointKdTree;
 use raywright_base::math::DVec3;
 
 /// Squared radius of each map of a progressive estimate, relative to the first map: r²ₛ₊₁ / r²ₛ = (s + α) / (s + 1), s
@@ -57,7 +57,7 @@ pub(super) const NEIGHBOURS: usize = 24;
 pub(super) fn first(photons: &[DVec3]) -> Option<f64> {
     /// Number of photons in the median, evenly spread over all.
     const ASKED: usize = 512;
-    let tree = KdTree::new(photons.iter().copied());
+    let tree = PointKdTree::new(photons.iter().copied());
     let mut found = Vec::new();
     let mut far: Vec<f64> = Vec::new();
     for place in photons.iter().step_by(photons.len().div_ceil(ASKED).max(1)) {

@@ -1,8 +1,8 @@
 //! The sequence of photon maps of one picture.
 
-use super::maps::{Flight, fly};
+use super::maps::{PhotonPass, fly};
 use super::radius::{Radii, first};
-use super::store::{Counted, Key, MapStore, Suitable};
+use super::store::{Key, MapStore, PhotonCount, Suitable};
 use crate::Job;
 use crate::light_paths::Limits;
 use raywright_base::math::DVec3;
@@ -16,14 +16,14 @@ use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 /// Assignment of samples to maps.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Spread {
+pub(crate) enum MapSchedule {
     /// Each batch of `size` samples has `maps` maps of its own, one for each of equal parts.
     Batches { size: u32, maps: u32 },
     /// Each sample has a map of its own. Radii shrink, or all equal the root mean square of `mean_of` radii.
     Progressive { alpha: f64, mean_of: Option<u32> },
 }
 
-impl Spread {
+impl MapSchedule {
     /// Return the index of a sample's map. Batches never share a map.
     fn map(self, number: u32) -> u32 {
         match self {
@@ -41,9 +41,9 @@ pub(crate) struct Sending {
     /// Light paths per map.
     pub paths: u32,
     pub limits: Limits,
-    /// As [`Flight::caustic`].
+    /// As [`PhotonPass::caustic`].
     pub caustic: bool,
-    pub spread: Spread,
+    pub spread: MapSchedule,
 }
 
 /// The maps of a picture: those now in use, and how to make each.
@@ -66,9 +66,9 @@ fn coarse(job: &Job) -> f64 {
     if size.is_finite() && size > 0.0 { size } else { 1.0 }
 }
 
-impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
+impl<'a, M: PhotonCount + Any + Send + Sync> Series<'a, M> {
     pub fn new(job: Job<'a>, sending: Sending) -> Self {
-        let alpha = if let Spread::Progressive { alpha, .. } = sending.spread { alpha } else { 1.0 };
+        let alpha = if let MapSchedule::Progressive { alpha, .. } = sending.spread { alpha } else { 1.0 };
         Self {
             job,
             sending,
@@ -97,7 +97,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         const MOST: u32 = 100_000;
         let all = self.sending.paths;
         let paths = all.min(MOST);
-        let flight = Flight { seed: SEED, paths, waves: None, ..self.flight(u32::MAX) };
+        let flight = PhotonPass { seed: SEED, paths, waves: None, ..self.flight(u32::MAX) };
         let told = self.store.radius(self.key(&flight, [None; 2]), || {
             let all = fly(self.job.scene, emitters?, self.job.camera, &flight, false, cancel);
             let disks: Vec<DVec3> = all.surfaces.iter().flatten().map(|photon| photon.position).collect();
@@ -116,7 +116,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
     fn radius(&self, map: u32) -> Option<f64> {
         let mut radii = self.radii.lock().unwrap_or_else(PoisonError::into_inner);
         let squared = match self.sending.spread {
-            Spread::Progressive { mean_of: Some(samples), .. } => radii.mean_square(samples),
+            MapSchedule::Progressive { mean_of: Some(samples), .. } => radii.mean_square(samples),
             _ => radii.square(map),
         };
         self.radius.map(|radius| radius * squared.sqrt())
@@ -126,7 +126,7 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
     pub fn ball(&self, map: u32) -> Option<f64> {
         let mut radii = self.radii.lock().unwrap_or_else(PoisonError::into_inner);
         let squared = match self.sending.spread {
-            Spread::Progressive { mean_of: Some(samples), .. } => radii.mean_ball(samples),
+            MapSchedule::Progressive { mean_of: Some(samples), .. } => radii.mean_ball(samples),
             _ => radii.ball(map),
         };
         self.ball.map(|radius| radius * squared.sqrt())
@@ -174,14 +174,14 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
         self.time(number).map_or(0.0, |time| self.job.camera.body().scene_time(time))
     }
 
-    fn flight(&self, map: u32) -> Flight {
+    fn flight(&self, map: u32) -> PhotonPass {
         let Sending { paths, limits, caustic, .. } = self.sending;
         let time = self.moves().then(|| self.time_of(map));
-        Flight { paths, limits, caustic, seed: self.job.seed, number: map, time, waves: self.waves_of(map) }
+        PhotonPass { paths, limits, caustic, seed: self.job.seed, number: map, time, waves: self.waves_of(map) }
     }
 
-    fn key(&self, flight: &Flight, radii: [Option<f64>; 2]) -> Key {
-        let Flight { paths, limits, caustic, seed, number, time, .. } = *flight;
+    fn key(&self, flight: &PhotonPass, radii: [Option<f64>; 2]) -> Key {
+        let PhotonPass { paths, limits, caustic, seed, number, time, .. } = *flight;
         let Limits { max_depth, roulette_depth } = limits;
         let time = time.map(|time| self.job.camera.body().scene_time(time).to_bits());
         let [radius, ball] = radii.map(|radius| radius.map(f64::to_bits));
@@ -192,13 +192,13 @@ impl<'a, M: Counted + Any + Send + Sync> Series<'a, M> {
     pub fn at_once(&self) -> u32 {
         let maps = (MapStore::<M>::MOST as u32 / self.sending.paths.max(1)).clamp(1, 16);
         match self.sending.spread {
-            Spread::Batches { size, maps: each } => maps * (size / each).max(1),
-            Spread::Progressive { .. } => maps,
+            MapSchedule::Batches { size, maps: each } => maps * (size / each).max(1),
+            MapSchedule::Progressive { .. } => maps,
         }
     }
 
     /// Make the maps for a range of samples; `make` makes a map from its flight and radius.
-    pub fn prepare(&self, numbers: Range<u32>, cancel: &Cancel, make: impl Fn(&Flight, Option<f64>) -> Option<M>) {
+    pub fn prepare(&self, numbers: Range<u32>, cancel: &Cancel, make: impl Fn(&PhotonPass, Option<f64>) -> Option<M>) {
         let lock = || self.ready.write().unwrap_or_else(PoisonError::into_inner);
         // Maps are made in turn, each on all threads. Maps no longer needed are dropped first.
         let mut wanted: Vec<u32> = numbers.map(|number| self.sending.spread.map(number)).collect();

@@ -12,7 +12,7 @@ use super::volume_photon::VolumeIndex;
 use crate::light_paths::Limits;
 use crate::nesting::MediumStack;
 use crate::transport::{Gather, MattLight, Settings, Visit};
-use crate::volumes::{Filled, KnownLight, Scattering, Volumes};
+use crate::volumes::{Filled, KnownLight, Scattering, VolumetricPath};
 use crate::{Job, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
@@ -133,7 +133,7 @@ impl<'a> Mapped<'a> {
         let gather = Some(Gather { rays: gather, caustic: sending.caustic });
         let Limits { max_depth, roulette_depth } = limits;
         let seen = if media {
-            let settings = Volumes { gather, ..Volumes::path(max_depth, roulette_depth) };
+            let settings = VolumetricPath { gather, ..VolumetricPath::path(max_depth, roulette_depth) };
             settings.begin_with(job, Arc::clone(&known) as Arc<dyn KnownLight + 'a>)
         } else {
             let settings = Settings { gather, ..Settings::path(max_depth, roulette_depth) };

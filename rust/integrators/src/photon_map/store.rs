@@ -19,7 +19,7 @@ pub(crate) struct Key {
 }
 
 /// Maps with a known number of photons.
-pub(crate) trait Counted {
+pub(crate) trait PhotonCount {
     /// Return the number of photons.
     fn count(&self) -> usize;
 }
@@ -46,7 +46,7 @@ impl<M> Default for MapStore<M> {
     }
 }
 
-impl<M: Counted> MapStore<M> {
+impl<M: PhotonCount> MapStore<M> {
     /// Maximum number of cached photons, apart from a larger latest map: some 200 MB.
     pub const MOST: usize = 1 << 21;
 

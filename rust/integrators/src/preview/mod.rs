@@ -14,7 +14,7 @@ use raywright_base::math::{Hit, HitColumns, LANES, Ray, gather};
 use raywright_base::simd::Level;
 use raywright_optics::Bsdf;
 use raywright_scene::{Camera, CameraRayLanes, RayOrigin, Scene, ShadingPoint};
-use room::{Block, Room};
+use room::{HitBlock, TileBuffers};
 use std::cell::Cell;
 
 /// Pixels of a tile: some columns of a band.
@@ -49,7 +49,7 @@ pub struct Preview<'a> {
 }
 
 thread_local! {
-    static ROOM: Cell<Option<Box<Room>>> = const { Cell::new(None) };
+    static ROOM: Cell<Option<Box<TileBuffers>>> = const { Cell::new(None) };
 }
 
 fn single(color: raywright_optics::Rgb) -> [f32; 3] {
@@ -90,7 +90,7 @@ impl<'a> Preview<'a> {
 
     /// Draws the rows from `first` on, of which there are as many as there is room for: at most a band.
     pub fn draw<P: Pixel>(&self, first: usize, rows: &mut [[P; 3]]) {
-        let mut room = ROOM.take().unwrap_or_else(|| Box::new(Room::new()));
+        let mut room = ROOM.take().unwrap_or_else(|| Box::new(TileBuffers::new()));
         let width = self.camera.width() as usize;
         let (columns, encoder) = (TILE / Self::ROWS, P::encoder());
         for left in (0..width).step_by(columns) {
@@ -113,8 +113,8 @@ impl<'a> Preview<'a> {
     }
 
     /// Finds the closest hits of the rays of a tile. What lies beyond the picture has the rays of its edge.
-    fn see(&self, left: usize, top: usize, blocks: usize, room: &mut Room) {
-        let Room { rays, t, uv, primitive, hits, which, seen, colors, .. } = room;
+    fn see(&self, left: usize, top: usize, blocks: usize, room: &mut TileBuffers) {
+        let TileBuffers { rays, t, uv, primitive, hits, which, seen, colors, .. } = room;
         rays.len = 0;
         let (mut film, mut lanes) = ([[0.0; LANES]; 2], CameraRayLanes::NONE);
         let last = [self.camera.width(), self.camera.height()].map(|count| f64::from(count) - 0.5);
@@ -149,7 +149,7 @@ impl<'a> Preview<'a> {
     }
 
     /// Shades the hits of a tile by ambient light, and queues shadow rays where more may come.
-    fn shade(&self, room: &mut Room) {
+    fn shade(&self, room: &mut TileBuffers) {
         room.shadow_rays.len = 0;
         room.lit.clear();
         let direct = 1.0 - self.ambient;
@@ -157,7 +157,7 @@ impl<'a> Preview<'a> {
             let count = LANES.min(room.seen - from);
             self.look_up(from, room);
             self.look_at_light(&mut room.block);
-            let Room { colors, shadow_rays, lit, block, .. } = &mut *room;
+            let TileBuffers { colors, shadow_rays, lit, block, .. } = &mut *room;
             let mut mask = 0;
             for lane in 0..count {
                 let color = &mut colors[block.which[lane] as usize];
@@ -188,10 +188,10 @@ impl<'a> Preview<'a> {
 
     /// Looks up the points of up to sixteen hits; the last stands in the lanes that are left.
     #[inline(always)]
-    fn look_up(&self, from: usize, room: &mut Room) {
+    fn look_up(&self, from: usize, room: &mut TileBuffers) {
         /// Hits ahead of those that are shaded, whose faces and corners are fetched meanwhile.
         const AHEAD: usize = 48;
-        let Room { rays, uv, primitive, hits, which, seen, block, .. } = room;
+        let TileBuffers { rays, uv, primitive, hits, which, seen, block, .. } = room;
         let (geometry, count) = (self.scene.geometry(), *seen);
         for (ahead, corners) in [(2 * AHEAD, false), (AHEAD, true)] {
             for &i in which.get(from + ahead..count.min(from + ahead + LANES)).unwrap_or_default() {
@@ -222,8 +222,8 @@ impl<'a> Preview<'a> {
 
     /// Computes shadow rays, cosines and sides of a block.
     #[inline(always)]
-    fn look_at_light(&self, block: &mut Block) {
-        let Block { surfaces, view, origin, direction, cosine, front, .. } = block;
+    fn look_at_light(&self, block: &mut HitBlock) {
+        let HitBlock { surfaces, view, origin, direction, cosine, front, .. } = block;
         let (position, error, normal) = (surfaces.position(), surfaces.error(), surfaces.normal());
         match self.light {
             PreviewLight::Headlight => towards_eye(self.level, normal, view, cosine, front),
@@ -238,7 +238,7 @@ impl<'a> Preview<'a> {
 
     /// What a surface reflects where it was hit, by its material.
     #[inline(never)]
-    fn looked_up(&self, block: &Block, lane: usize) -> [f32; 3] {
+    fn looked_up(&self, block: &HitBlock, lane: usize) -> [f32; 3] {
         let surface = block.surfaces.get(lane);
         let (ray, hit) = match self.triangles {
             // The point of a triangle is known by its weights, wherever the ray starts.
@@ -259,8 +259,8 @@ impl<'a> Preview<'a> {
     }
 
     /// Adds the light of the rays that nothing blocks.
-    fn cast(&self, room: &mut Room) {
-        let Room { colors, shadow_rays, lit, occluded, .. } = room;
+    fn cast(&self, room: &mut TileBuffers) {
+        let TileBuffers { colors, shadow_rays, lit, occluded, .. } = room;
         if lit.is_empty() {
             return;
         }

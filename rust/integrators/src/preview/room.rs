@@ -6,7 +6,7 @@ use raywright_base::sampling::Pairs;
 use raywright_scene::SurfaceLanes;
 
 /// Rays by columns, with room for sixteen more than a tile has.
-pub(super) struct Rays {
+pub(super) struct TileRays {
     pub len: usize,
     pub origin: [Vec<f64>; 3],
     pub direction: [Vec<f64>; 3],
@@ -16,7 +16,7 @@ pub(super) struct Rays {
     pub rows: Vec<Ray>,
 }
 
-impl Rays {
+impl TileRays {
     pub fn new() -> Self {
         let column = || vec![0.0; TILE + LANES];
         Self {
@@ -75,8 +75,8 @@ impl Rays {
 }
 
 /// What a thread needs for a tile.
-pub(super) struct Room {
-    pub rays: Rays,
+pub(super) struct TileBuffers {
+    pub rays: TileRays,
     pub t: Vec<f64>,
     pub uv: Vec<[f64; 2]>,
     /// −1 for a miss.
@@ -87,15 +87,15 @@ pub(super) struct Room {
     pub which: Vec<u32>,
     pub seen: usize,
     pub colors: Vec<[f32; 3]>,
-    pub shadow_rays: Rays,
+    pub shadow_rays: TileRays,
     /// The ray of each shadow ray, and what its light adds.
     pub lit: Vec<(u32, [f32; 3])>,
     pub occluded: Vec<bool>,
-    pub block: Box<Block>,
+    pub block: Box<HitBlock>,
 }
 
 /// Sixteen hits on their way.
-pub(super) struct Block {
+pub(super) struct HitBlock {
     pub which: [u32; LANES],
     pub rays: [Ray; LANES],
     pub hits: [Hit; LANES],
@@ -110,10 +110,10 @@ pub(super) struct Block {
     pub front: [f64; LANES],
 }
 
-impl Room {
+impl TileBuffers {
     pub fn new() -> Self {
         const NO_RAY: Ray = Ray::new(DVec3::ZERO, DVec3::NAN);
-        let block = Block {
+        let block = HitBlock {
             which: [0; LANES],
             rays: [NO_RAY; LANES],
             hits: [Hit::MISS; LANES],
@@ -128,7 +128,7 @@ impl Room {
             front: [0.0; LANES],
         };
         Self {
-            rays: Rays::new(),
+            rays: TileRays::new(),
             t: vec![0.0; TILE],
             uv: vec![[0.0; 2]; TILE],
             primitive: vec![0; TILE],
@@ -136,7 +136,7 @@ impl Room {
             which: vec![0; TILE],
             seen: 0,
             colors: vec![[0.0; 3]; TILE],
-            shadow_rays: Rays::new(),
+            shadow_rays: TileRays::new(),
             lit: Vec::new(),
             occluded: vec![false; TILE],
             block: Box::new(block),

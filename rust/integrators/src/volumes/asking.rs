@@ -1,7 +1,7 @@
 //! Ray intersection as asynchronous calls.
 //!
 //! A path is written as sequential code that awaits its ray queries. For a single path the result is immediate
-//! ([`Alone`]). For a batch of paths (`together.rs`), the pending queries of all are traced together.
+//! ([`ImmediateQueries`]). For a batch of paths (`together.rs`), the pending queries of all are traced together.
 
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::Scene;
@@ -20,9 +20,9 @@ pub(crate) trait Asks: Copy {
 
 /// Trace each query immediately.
 #[derive(Clone, Copy)]
-pub(crate) struct Alone<'a>(pub &'a Scene);
+pub(crate) struct ImmediateQueries<'a>(pub &'a Scene);
 
-impl Asks for Alone<'_> {
+impl Asks for ImmediateQueries<'_> {
     async fn first(self, ray: &Ray) -> Hit {
         self.0.intersect_one(ray)
     }
@@ -32,7 +32,7 @@ impl Asks for Alone<'_> {
     }
 }
 
-/// Run a path that uses [`Alone`].
+/// Run a path that uses [`ImmediateQueries`].
 ///
 /// # Panics
 /// If it awaits anything else.

@@ -4,11 +4,11 @@
 //! weights are in [`super::vertex`]. Emission of media is found by camera paths alone.
 
 use super::asking::at_once;
-use super::course::{Course, Going, Nobody, Place};
+use super::course::{Course, Going, Nobody, TraversalEnd};
 use super::filled::Filled;
 use super::light_end::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::numbers::{Numbers, depth};
+use super::numbers::{PathNumbers, depth};
 use super::vertex::{Point, Vertex};
 use super::weights::Weights;
 use crate::dimensions::Dimensions;
@@ -78,7 +78,7 @@ struct EyePath {
 /// Data of a sample besides its path.
 struct Sample<'s, 'n> {
     hero: usize,
-    numbers: &'s mut Numbers<'n>,
+    numbers: &'s mut PathNumbers<'n>,
     cancel: &'s Cancel,
     /// Random numbers for the camera's lens and shutter.
     lens: [f64; 2],
@@ -94,7 +94,7 @@ impl<'a> MediaVisitor<'a> for LightVertices<'a> {
         &mut self,
         at: &Vertex<'a>,
         path: &Drifting,
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         dimensions: light_paths::Dimensions,
         _: &Cancel,
     ) {
@@ -186,7 +186,7 @@ impl<'a> BothEnds<'a> {
         let hero = ((u * 3.0) as usize).min(2);
         let lens = if camera.uses_lens() { sample.sampler.two(1) } else { [0.5; 2] };
         let time = if self.moves { sample.sampler.one(3) } else { 0.0 };
-        let mut numbers = Numbers::apart(&mut sample.sampler);
+        let mut numbers = PathNumbers::apart(&mut sample.sampler);
         // This choice must be independent of the wavelengths' own: dispersion keeps the first.
         let hero = if waves.is_some() { numbers.hero() } else { hero };
         let going = Going { ray: sample.ray, weights: Weights::START, media, passed: 0 };
@@ -222,15 +222,15 @@ impl<'a> BothEnds<'a> {
         let mut parting = None;
         let at = match place {
             None => return false,
-            Some(Place::Outside) => {
+            Some(TraversalEnd::Outside) => {
                 *light += path.throughput() * self.outside(path);
                 return false;
             }
-            Some(Place::Medium { here, collision, .. }) => {
+            Some(TraversalEnd::Medium { here, collision, .. }) => {
                 path.footprint = path.footprint.at(collision.t);
                 Vertex::of_medium(self.job.scene, here, &collision, (ray, media), path.waves.as_ref())
             }
-            Some(Place::Surface { hit, outside, through }) => {
+            Some(TraversalEnd::Surface { hit, outside, through }) => {
                 let arrived;
                 (arrived, parting) = match path.waves {
                     None => (Arrived::new(self.job.scene, ray, hit, outside), None),

@@ -1,11 +1,11 @@
 //! Medium traversal between scattering events.
 
-use super::asking::{Alone, Asks};
+use super::asking::{Asks, ImmediateQueries};
 use super::filled::{self, Filled};
-use super::flight::{Collision, Flight};
-use super::numbers::Numbers;
+use super::flight::{Collision, MediumSegment};
+use super::numbers::PathNumbers;
 use super::scattering::Scattering;
-use super::surfaces::{Met, come_to, straight};
+use super::surfaces::{ClassifiedHit, come_to, straight};
 use super::weights::Weights;
 use crate::nesting::MediumStack;
 use crate::shadows::opacity;
@@ -18,7 +18,7 @@ use raywright_scene::media::Coefficients;
 
 /// Constant parameters of a traversal.
 #[derive(Clone, Copy)]
-pub(crate) struct Course<'a, A = Alone<'a>> {
+pub(crate) struct Course<'a, A = ImmediateQueries<'a>> {
     pub scene: &'a Scene,
     /// Ray intersection.
     pub asks: A,
@@ -42,7 +42,7 @@ pub(crate) struct Going {
 }
 
 /// The end of a traversal.
-pub(crate) enum Place {
+pub(crate) enum TraversalEnd {
     /// A scattering event, and the span of the ray in its medium.
     Medium { here: Scattering, collision: Collision, span: [f64; 2] },
     /// A surface.
@@ -54,14 +54,20 @@ pub(crate) enum Place {
 /// Adds light that reaches a path along its ray.
 pub(super) trait OnTheWay {
     /// Return the light on a span of the ray in a homogeneous scattering medium.
-    async fn add(&self, now: &Going, span: [f64; 2], here: (&Coefficients, Phase), numbers: &mut Numbers<'_>) -> Rgb;
+    async fn add(
+        &self,
+        now: &Going,
+        span: [f64; 2],
+        here: (&Coefficients, Phase),
+        numbers: &mut PathNumbers<'_>,
+    ) -> Rgb;
 }
 
 /// Adds no light.
 pub(super) struct Nobody;
 
 impl OnTheWay for Nobody {
-    async fn add(&self, _: &Going, _: [f64; 2], _: (&Coefficients, Phase), _: &mut Numbers<'_>) -> Rgb {
+    async fn add(&self, _: &Going, _: [f64; 2], _: (&Coefficients, Phase), _: &mut PathNumbers<'_>) -> Rgb {
         Rgb::ZERO
     }
 }
@@ -69,7 +75,7 @@ impl OnTheWay for Nobody {
 impl<'a> Course<'a> {
     /// Make a traversal for a single path.
     pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
-        Self { scene, asks: Alone(scene), scatters: true, roulette: false, waves }
+        Self { scene, asks: ImmediateQueries(scene), scatters: true, roulette: false, waves }
     }
 }
 
@@ -81,11 +87,11 @@ impl<A: Asks> Course<'_, A> {
         &self,
         path: &mut Going,
         (hero, mut way): (usize, f64),
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
         on_the_way: Option<&impl OnTheWay>,
-    ) -> Option<Place> {
+    ) -> Option<TraversalEnd> {
         let mut start = path.ray.t_min;
         while !cancel.is_raised() {
             let around = filled::around(self.scene, &path.media, &path.ray);
@@ -109,26 +115,26 @@ impl<A: Asks> Course<'_, A> {
                 if let (Some(here), Some(lit)) = (even, on_the_way) {
                     *light += lit.add(path, span, (&here, medium.phase()), numbers).await;
                 }
-                let flight = Flight { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
+                let flight = MediumSegment { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
                 let weights = &mut path.weights;
                 if let Some(collision) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
                     let (position, before) = (path.ray.at(collision.t), path.ray.direction);
                     let here = Scattering { position, before, phase: medium.phase() };
-                    return Some(Place::Medium { here, collision, span });
+                    return Some(TraversalEnd::Medium { here, collision, span });
                 }
                 if path.weights.carried.is_black() {
                     return None;
                 }
             }
             if !hit.is_hit() {
-                return Some(Place::Outside);
+                return Some(TraversalEnd::Outside);
             }
             start = hit.t;
             match come_to((self.scene, self.asks), &path.ray, &hit, &path.media).await {
-                Met::Passed(beyond, media) => {
+                ClassifiedHit::Passed(beyond, media) => {
                     (path.ray.t_min, path.media, path.passed) = (beyond, media, path.passed.saturating_add(1));
                 }
-                Met::Surface { hit, outside, through, beyond } => {
+                ClassifiedHit::Surface { hit, outside, through, beyond } => {
                     let opacity = opacity(self.scene, &path.ray, &hit);
                     let straight = straight(self.scene, &path.ray, &hit, outside);
                     if opacity < 1.0 && numbers.next() >= opacity {
@@ -136,7 +142,7 @@ impl<A: Asks> Course<'_, A> {
                     } else if straight > 0.0 && numbers.next() < straight {
                         (path.ray.t_min, path.media) = (beyond, through);
                     } else {
-                        return Some(Place::Surface { hit, outside, through });
+                        return Some(TraversalEnd::Surface { hit, outside, through });
                     }
                     path.passed = path.passed.saturating_add(2);
                 }
@@ -154,7 +160,7 @@ impl<A: Asks> Course<'_, A> {
         mut media: MediumStack<Filled>,
         weights: &mut Weights,
         hero: &mut Option<usize>,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
     ) {
         let length = ray.direction.length();
@@ -166,7 +172,7 @@ impl<A: Asks> Course<'_, A> {
                 false => None,
             };
             let (mut left, mut pane) = (1.0, 0.0);
-            if let Some(Met::Surface { hit, outside, .. }) = &met {
+            if let Some(ClassifiedHit::Surface { hit, outside, .. }) = &met {
                 pane = straight(self.scene, &ray, hit, *outside);
                 left -= opacity(self.scene, &ray, hit) * (1.0 - pane);
                 if left <= 0.0 {
@@ -178,7 +184,7 @@ impl<A: Asks> Course<'_, A> {
             if let Some((medium, within)) = filled::around(self.scene, &media, &ray) {
                 let span = [start, end];
                 let Self { scatters, roulette, waves, .. } = *self;
-                let flight = Flight { medium, ray: within, span, length, scatters, roulette, waves };
+                let flight = MediumSegment { medium, ray: within, span, length, scatters, roulette, waves };
                 flight.fade(weights, hero, numbers, cancel);
             }
             weights.carried *= left;
@@ -188,9 +194,11 @@ impl<A: Asks> Course<'_, A> {
             start = end;
             match met {
                 None => return,
-                Some(Met::Passed(beyond, now)) => (ray.t_min, media) = (beyond, now),
-                Some(Met::Surface { through, beyond, .. }) if pane > 0.0 => (ray.t_min, media) = (beyond, through),
-                Some(Met::Surface { hit, .. }) => ray.t_min = hit.t.next_up(),
+                Some(ClassifiedHit::Passed(beyond, now)) => (ray.t_min, media) = (beyond, now),
+                Some(ClassifiedHit::Surface { through, beyond, .. }) if pane > 0.0 => {
+                    (ray.t_min, media) = (beyond, through)
+                }
+                Some(ClassifiedHit::Surface { hit, .. }) => ray.t_min = hit.t.next_up(),
             }
             if ray.t_min > ray.t_max {
                 // The rest of the segment is within rounding.
@@ -208,7 +216,7 @@ impl<A: Asks> Course<'_, A> {
         light: Rgb,
         ray: Ray,
         media: MediumStack<Filled>,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
     ) -> Rgb {
         let mut weights = Weights { carried: light, ..Weights::START };

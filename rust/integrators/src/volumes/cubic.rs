@@ -2,13 +2,13 @@
 //!
 //! Their optical depth has a closed form.
 
-use super::flight::{Collision, Flight};
-use super::numbers::Numbers;
+use super::flight::{Collision, MediumSegment};
+use super::numbers::PathNumbers;
 use super::weights::Weights;
 use raywright_optics::Rgb;
 use raywright_scene::media::Cubic;
 
-impl Flight<'_> {
+impl MediumSegment<'_> {
     /// Return the extinction between two `t` of a segment.
     #[inline]
     fn cubic(&self, [start, end]: [f64; 2]) -> Cubic {
@@ -27,15 +27,15 @@ impl Flight<'_> {
         self.cubic([start, end]).mean() * self.way(start, end)
     }
 
-    /// Sample a collision in a segment as [`Flight::fly`] does. `passed` accumulates the optical depth of consecutive
-    /// segments, which the weights do not include yet.
+    /// Sample a collision in a segment as [`MediumSegment::fly`] does. `passed` accumulates the optical depth of
+    /// consecutive segments, which the weights do not include yet.
     pub(super) fn fly_through_cell(
         &self,
         span: [f64; 2],
         passed: &mut Rgb,
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         light: &mut Rgb,
     ) -> Option<Collision> {
         let [start, end] = span;

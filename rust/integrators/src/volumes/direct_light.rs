@@ -3,7 +3,7 @@
 use super::asking::Asks;
 use super::course::Course;
 use super::filled::Filled;
-use super::numbers::Numbers;
+use super::numbers::PathNumbers;
 use super::path_state::PathState;
 use super::walker::Walker;
 use super::weights::Weights;
@@ -23,7 +23,7 @@ impl<A: Asks> Walker<'_, A> {
         path: &PathState,
         media: impl FnOnce(&LightSample) -> MediumStack<Filled>,
         (hero, draw): (usize, (u32, u32)),
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
     ) -> Option<(LightSample, Rgb)> {
         let choice = numbers.ray.light_choice(draw.0);
@@ -45,7 +45,7 @@ impl<A: Asks> Walker<'_, A> {
         light: &LightSample,
         media: MediumStack<Filled>,
         hero: usize,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
     ) -> Option<Rgb> {
         let (scattered, pdf) = here.evaluate(light.direction);

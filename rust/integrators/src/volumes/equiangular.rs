@@ -2,7 +2,7 @@
 
 use super::asking::Asks;
 use super::course::{Going, OnTheWay};
-use super::numbers::Numbers;
+use super::numbers::PathNumbers;
 use super::path_state::PathState;
 use super::scattering::Scattering;
 use super::walker::Walker;
@@ -60,7 +60,7 @@ impl<A: Asks> OnTheWay for OfPoints<'_, '_, A> {
         now: &Going,
         span: [f64; 2],
         (here, phase): (&Coefficients, Phase),
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
     ) -> Rgb {
         let Going { ray, weights, media, .. } = *now;
         let path = PathState { ray, weights, media, ..*self.path };
@@ -89,7 +89,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         here: &Coefficients,
         phase: Phase,
         hero: usize,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
     ) -> Rgb {
         let choice = numbers.ray.light_choice(1);

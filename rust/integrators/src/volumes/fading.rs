@@ -1,7 +1,7 @@
 //! Transmittance along ray segments.
 
-use super::flight::Flight;
-use super::numbers::Numbers;
+use super::flight::MediumSegment;
+use super::numbers::PathNumbers;
 use super::weights::Weights;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -14,7 +14,7 @@ const SURVIVAL: f64 = 0.25;
 const FAINT_DEPTH: f64 = 2.995_732_273_553_991;
 const LAST_DEPTH: f64 = 746.0;
 
-impl Flight<'_> {
+impl MediumSegment<'_> {
     /// Attenuate light along the segment, and update the densities of sampling it by distance. `hero` is drawn when
     /// needed, unless given.
     ///
@@ -23,7 +23,7 @@ impl Flight<'_> {
     /// Estimating Attenuation in Participating Media", 2014, 3.2). If an end of the segment was sampled in a medium,
     /// roulette terminates faint light. Its error is far below that of the sampled point, and most such segments lead
     /// through a whole cloud.
-    pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut Numbers, cancel: &Cancel) {
+    pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut PathNumbers, cancel: &Cancel) {
         let scatters = self.scatters && self.medium.scatters();
         let mut start = self.span[0];
         // Optical depth of consecutive cells.
@@ -79,7 +79,7 @@ impl Flight<'_> {
         scatters: bool,
         weights: &mut Weights,
         hero: usize,
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         cancel: &Cancel,
     ) {
         let left = (least * (-(end - t) * self.length)).map(f64::exp);
@@ -110,7 +110,7 @@ impl Flight<'_> {
 }
 
 /// Play one round of roulette.
-fn survive(weights: &mut Weights, numbers: &mut Numbers) {
+fn survive(weights: &mut Weights, numbers: &mut PathNumbers) {
     if numbers.next() < SURVIVAL {
         weights.carried /= SURVIVAL;
     } else {

@@ -1,6 +1,6 @@
 //! Distance sampling in a medium.
 
-use super::numbers::Numbers;
+use super::numbers::PathNumbers;
 use super::weights::Weights;
 use raywright_base::math::Ray;
 use raywright_base::workers::Cancel;
@@ -9,7 +9,7 @@ use raywright_optics::spectra::Waves;
 use raywright_scene::media::{Coefficients, Content, Medium, Stretch};
 
 /// A segment of a ray in a medium.
-pub(super) struct Flight<'a> {
+pub(super) struct MediumSegment<'a> {
     pub medium: &'a dyn Medium,
     /// The ray in medium space.
     pub ray: Ray,
@@ -38,7 +38,7 @@ pub(crate) struct Collision {
     pub came: Rgb,
 }
 
-impl Flight<'_> {
+impl MediumSegment<'_> {
     /// Return the world length between two `t`.
     #[inline]
     pub(super) fn way(&self, from: f64, to: f64) -> f64 {
@@ -87,7 +87,7 @@ impl Flight<'_> {
         &self,
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> Option<Collision> {
@@ -162,12 +162,12 @@ impl Flight<'_> {
         [mut t, end]: [f64; 2],
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> Option<Collision> {
         let scatters = self.scatters && self.medium.scatters();
-        // These are the null collisions of shadow rays ([`Flight::fade`]).
+        // These are the null collisions of shadow rays ([`MediumSegment::fade`]).
         let spread = (most - least).at_least(Rgb::ZERO);
         while !cancel.is_raised() {
             let rest = self.way(t, end);

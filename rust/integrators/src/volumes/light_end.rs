@@ -1,6 +1,6 @@
 //! MIS partials of a light path in media.
 
-use super::vertex::{Met, Vertex};
+use super::vertex::{ConnectedVertex, Vertex};
 use crate::light_paths::{Onward, Partial};
 use raywright_scene::{EmissionDensity, EmissionSample, Emitters};
 
@@ -29,13 +29,13 @@ impl LightEnd {
     }
 
     /// Return the partials at the vertex as seen along `met`.
-    fn met(&self, emitters: &Emitters, at: &Vertex, met: &Met) -> Partial {
+    fn met(&self, emitters: &Emitters, at: &Vertex, met: &ConnectedVertex) -> Partial {
         let Some(departure) = &self.departure else { return self.partial };
         self.partial.asked(emitters.asked_from(&met.receiver, departure, at.ray.direction, at.t))
     }
 
     /// Return [`Partial::others`] as seen along `met`, for a path that arrives with a density.
-    pub fn others(&self, emitters: &Emitters, at: &Vertex, met: &Met, comes: f64) -> f64 {
+    pub fn others(&self, emitters: &Emitters, at: &Vertex, met: &ConnectedVertex, comes: f64) -> f64 {
         self.met(emitters, at, met).others(comes, met.back)
     }
 

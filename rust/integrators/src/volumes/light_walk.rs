@@ -1,9 +1,9 @@
 //! Tracing of light paths through media, one path at a time.
 
 use super::asking::at_once;
-use super::course::{Course, Going, Nobody, Place};
+use super::course::{Course, Going, Nobody, TraversalEnd};
 use super::filled::Filled;
-use super::numbers::{Numbers, depth};
+use super::numbers::{PathNumbers, depth};
 use super::vertex::{Point, Vertex};
 use super::weights::Weights;
 use crate::light_paths::{Arrived, Dimensions, EmissionDimensions, Limits, Onward, Times};
@@ -86,7 +86,7 @@ pub(crate) trait MediaVisitor<'a> {
         &mut self,
         at: &Vertex<'a>,
         path: &Drifting,
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         dimensions: Dimensions,
         cancel: &Cancel,
     );
@@ -161,7 +161,7 @@ impl<'a> MediaLightWalk<'a> {
         cancel: &Cancel,
         visitor: &mut impl MediaVisitor<'a>,
     ) {
-        let mut numbers = Numbers::apart(sampler);
+        let mut numbers = PathNumbers::apart(sampler);
         if path.waves.is_some() {
             // This choice must be independent of the wavelengths' own: dispersion keeps the first.
             path.hero = numbers.hero();
@@ -183,11 +183,11 @@ impl<'a> MediaLightWalk<'a> {
             let mut waiting = None;
             let at = match place {
                 None => return,
-                Some(Place::Outside) => return visitor.leave(&path),
-                Some(Place::Medium { here, collision, .. }) => {
+                Some(TraversalEnd::Outside) => return visitor.leave(&path),
+                Some(TraversalEnd::Medium { here, collision, .. }) => {
                     Vertex::of_medium(self.scene, here, &collision, (ray, media), path.waves.as_ref())
                 }
-                Some(Place::Surface { hit, outside, through }) => {
+                Some(TraversalEnd::Surface { hit, outside, through }) => {
                     let (arrived, parting) = match path.waves {
                         None => (Arrived::new(self.scene, ray, hit, outside), None),
                         Some(waves) => {
@@ -219,7 +219,7 @@ impl<'a> MediaLightWalk<'a> {
     fn come_from_afar(
         &self,
         path: &mut Drifting,
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         cancel: &Cancel,
         visitor: &mut impl MediaVisitor<'a>,
     ) {
@@ -237,7 +237,7 @@ impl<'a> MediaLightWalk<'a> {
         at: &Vertex<'a>,
         path: &mut Drifting,
         parting: Option<Parting>,
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         dimensions: Dimensions,
         visitor: &mut impl MediaVisitor<'a>,
     ) -> bool {

@@ -36,11 +36,11 @@ pub(super) use both_ends::BothEnds;
 pub(super) use filled::Filled;
 pub(super) use known::KnownLight;
 pub(super) use light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-pub(super) use numbers::Numbers;
+pub(super) use numbers::PathNumbers;
 pub use optical_depth::optical_depths;
 pub(super) use reuse::can_share;
 pub(super) use scattering::Scattering;
-pub(super) use surfaces::{Met, meet};
+pub(super) use surfaces::{ClassifiedHit, meet};
 pub(super) use to_camera::{Counting, MediaLightPaths};
 pub(super) use vertex::{Point, Vertex};
 
@@ -64,7 +64,7 @@ pub(super) enum Onwards {
 
 /// Parameters of volumetric path tracing.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Volumes {
+pub(super) struct VolumetricPath {
     /// Maximum number of scattering events, at surfaces or in media.
     pub max_depth: Option<u32>,
     /// Number of scattering events after which Russian roulette starts.
@@ -80,14 +80,14 @@ pub(super) struct Volumes {
     pub ambient: Rgb,
     /// Minimum contribution of a path in any color; others end.
     pub least: f64,
-    /// Use of precomputed light at matte surfaces and in media, which [`Volumes::begin_with`] receives. `None`
+    /// Use of precomputed light at matte surfaces and in media, which [`VolumetricPath::begin_with`] receives. `None`
     /// continues paths there.
     pub gather: Option<Gather>,
     /// Paths of a group share their results, in scenes that allow it ([`can_share`]).
     pub shares: bool,
 }
 
-impl Volumes {
+impl VolumetricPath {
     /// Return the parameters of a path tracer.
     pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
         Self {
@@ -131,7 +131,7 @@ impl Volumes {
 
 /// Data shared by the workers of a picture.
 struct Among<'a> {
-    settings: Volumes,
+    settings: VolumetricPath,
     scene: &'a Scene,
     /// Footprint of camera rays.
     footprint: Footprint,

@@ -5,7 +5,7 @@ use raywright_base::sampling::Sampler;
 
 /// The random numbers of one path. Fixed choices use sample dimensions. Choices whose number is unbounded, such as null
 /// collisions along a ray, use a sequence of further numbers.
-pub(crate) struct Numbers<'s> {
+pub(crate) struct PathNumbers<'s> {
     sampler: &'s mut Sampler,
     /// An independent sequence, and the count of numbers drawn from it.
     more: Sampler,
@@ -14,7 +14,7 @@ pub(crate) struct Numbers<'s> {
     pub ray: Dimensions,
 }
 
-impl<'s> Numbers<'s> {
+impl<'s> PathNumbers<'s> {
     /// Make the numbers of a sample.
     pub fn new(sampler: &'s mut Sampler) -> Self {
         let more = sampler.paired();

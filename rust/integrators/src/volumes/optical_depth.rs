@@ -1,7 +1,7 @@
 //! Optical depths along rays.
 
 use super::filled::{Filled, around};
-use super::flight::Flight;
+use super::flight::MediumSegment;
 use crate::nesting::{MediumStack, crossed};
 use raywright_base::math::Ray;
 use raywright_optics::Rgb;
@@ -34,10 +34,10 @@ pub fn optical_depths(scene: &Scene, rays: &[Ray], depths: &mut [Rgb]) {
 fn along(scene: &Scene, ray: &Ray, media: &MediumStack<Filled>, span: [f64; 2]) -> Rgb {
     let Some((medium, within)) = around(scene, media, ray).filter(|_| span[0] < span[1]) else { return Rgb::ZERO };
     let length = ray.direction.length();
-    Flight { medium, ray: within, span, length, scatters: false, roulette: false, waves: None }.optical_depth()
+    MediumSegment { medium, ray: within, span, length, scatters: false, roulette: false, waves: None }.optical_depth()
 }
 
-impl Flight<'_> {
+impl MediumSegment<'_> {
     /// Return the total optical depth: in closed form, unless the medium is heterogeneous with extinction that is not
     /// cubic.
     fn optical_depth(&self) -> Rgb {

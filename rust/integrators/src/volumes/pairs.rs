@@ -18,14 +18,14 @@ pub(super) struct Takers {
 }
 
 /// A target point and two unit directions from it.
-pub(super) struct Way {
+pub(super) struct TargetDirections {
     pub to: DVec3,
     pub onward: DVec3,
     pub to_light: DVec3,
 }
 
 /// Factors of a pair of points.
-pub(super) struct Pair {
+pub(super) struct PairFactors {
     /// The phase function and the surface cosine, over the squared distance.
     pub share: f64,
     /// The phase function at the target into its two directions; 1 and 0 for a surface, which reflects uniformly.
@@ -100,7 +100,14 @@ impl Takers {
 
     /// Compute the factors of all points to a target, given the extinction and the shares of the segments in the
     /// medium. For a surface, its normal gives the cosine.
-    pub fn meet(&mut self, way: &Way, normal: Option<DVec3>, inside: &[f64], phase: &Phase, extinction: Rgb) {
+    pub fn meet(
+        &mut self,
+        way: &TargetDirections,
+        normal: Option<DVec3>,
+        inside: &[f64],
+        phase: &Phase,
+        extinction: Rgb,
+    ) {
         let count = self.position[0].len();
         let Self { level, position, before, share, distance, onward, to_light, left } = self;
         for column in [&mut *share, distance, onward, to_light].into_iter().chain(left.iter_mut()) {
@@ -133,9 +140,14 @@ impl Takers {
 
     /// Return the factors of a point to the target.
     #[inline]
-    pub fn pair(&self, i: usize) -> Pair {
+    pub fn pair(&self, i: usize) -> PairFactors {
         let left = self.left.each_ref().map(|column| column[i]);
-        Pair { share: self.share[i], onward: self.onward[i], to_light: self.to_light[i], left: Rgb::from_array(left) }
+        PairFactors {
+            share: self.share[i],
+            onward: self.onward[i],
+            to_light: self.to_light[i],
+            left: Rgb::from_array(left),
+        }
     }
 }
 
@@ -152,7 +164,7 @@ mod tests {
         let drawn = |number: u32| Sampler::new(41, 0, number);
         let unit = |number: u32| warp::uniform_sphere(drawn(number).two(0));
         let place = |number: u32| unit(number) * 2.0 * drawn(number).one(4);
-        let way = Way { to: place(0), onward: unit(1), to_light: unit(2) };
+        let way = TargetDirections { to: place(0), onward: unit(1), to_light: unit(2) };
         let inside: Vec<f64> = (0..21).map(|i| drawn(100 + i).one(0)).collect();
         let mut first: Option<Vec<[f64; 6]>> = None;
         for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
@@ -164,7 +176,7 @@ mod tests {
             for normal in [None, Some(DVec3::Z)] {
                 takers.meet(&way, normal, &[&inside[..], &[1.0]].concat(), &phase, extinction);
                 for (i, inside) in (0..21).zip(&inside) {
-                    let Pair { share, onward, to_light, left } = takers.pair(i as usize);
+                    let PairFactors { share, onward, to_light, left } = takers.pair(i as usize);
                     let to = way.to - place(10 + i);
                     let (length, ahead) = (to.length(), to.normalize());
                     let cosine = normal.map_or(1.0, |normal| (-normal.dot(ahead)).max(0.0));

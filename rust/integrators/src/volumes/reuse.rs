@@ -1,7 +1,7 @@
 //! Path reuse in homogeneous media.
 
 use super::filled::Filled;
-use super::pairs::{Takers, Way};
+use super::pairs::{Takers, TargetDirections};
 use super::path_state::PathState;
 use super::scattering::Scattering;
 use crate::nesting::Filling;
@@ -38,14 +38,14 @@ pub(crate) fn can_share(scene: &Scene) -> bool {
 /// directions, and its cosine replaces σ. For several colors, e^(−σs) is the mean, weighted by each color's density of
 /// sampling the path before.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Parts {
-    pub first: Option<First>,
-    pub second: Option<Second>,
+pub(super) struct SharedVertices {
+    pub first: Option<FirstVertex>,
+    pub second: Option<SecondVertex>,
 }
 
 /// A first vertex, which receives light.
 #[derive(Clone, Copy)]
-pub(super) struct First {
+pub(super) struct FirstVertex {
     position: DVec3,
     before: DVec3,
     phase: Phase,
@@ -62,7 +62,7 @@ pub(super) struct First {
 
 /// A second vertex, which provides light.
 #[derive(Clone, Copy)]
-pub(super) struct Second {
+pub(super) struct SecondVertex {
     departure: RayOrigin,
     /// Surface normal on the visible side; `None` in the medium.
     normal: Option<DVec3>,
@@ -77,7 +77,7 @@ pub(super) struct Second {
     pub found: Rgb,
 }
 
-impl First {
+impl FirstVertex {
     /// Maximum forward scattering relative to isotropic scattering with reuse. With a narrower phase function, the
     /// paths of a group rarely look into each other's directions, and such samples have high weights. At a mean cosine
     /// of 0.95 the error is 120 times larger, and underestimated.
@@ -104,7 +104,7 @@ impl First {
     }
 }
 
-impl Second {
+impl SecondVertex {
     /// Make a second vertex in the medium.
     pub fn of_medium(position: DVec3, (to_light, lit): (DVec3, Rgb), onward: DVec3) -> Self {
         let (normal, inside, is_beyond) = (None, 1.0, false);
@@ -136,7 +136,7 @@ impl Second {
     }
 
     /// Return the share of the segment to a first vertex that lies in its medium, given all hits on it; 0 if occluded.
-    fn seen(&self, scene: &Scene, first: &First, hits: &[Hit]) -> f64 {
+    fn seen(&self, scene: &Scene, first: &FirstVertex, hits: &[Hit]) -> f64 {
         match hits {
             [] if !self.is_beyond => 1.0,
             [hit] if self.is_beyond && first.is_alone => {
@@ -166,7 +166,14 @@ impl Reuse {
     const BUNDLE: usize = 16;
 
     /// Add to each sample's radiance its share of the group's results.
-    pub fn share(&mut self, scene: &Scene, groups: &[u32], parts: &[Parts], cancel: &Cancel, radiance: &mut [Rgb]) {
+    pub fn share(
+        &mut self,
+        scene: &Scene,
+        groups: &[u32],
+        parts: &[SharedVertices],
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
         let mut start = 0;
         for &count in groups {
             if cancel.is_raised() {
@@ -186,12 +193,12 @@ impl Reuse {
     }
 
     /// Share within one medium, that of a path.
-    fn share_within(&mut self, scene: &Scene, of: &First, parts: &[Parts], radiance: &mut [Rgb]) {
+    fn share_within(&mut self, scene: &Scene, of: &FirstVertex, parts: &[SharedVertices], radiance: &mut [Rgb]) {
         let Self { takers, taking, giving, .. } = self;
         takers.clear();
         taking.clear();
         giving.clear();
-        for (i, Parts { first, second }) in parts.iter().enumerate() {
+        for (i, SharedVertices { first, second }) in parts.iter().enumerate() {
             let Some(first) = first.filter(|first| first.among == of.among) else { continue };
             takers.push(first.position, first.before);
             taking.push(i);
@@ -206,7 +213,7 @@ impl Reuse {
     }
 
     /// Distribute the light of one provider.
-    fn give(&mut self, number: usize, of: &First, parts: &[Parts], radiance: &mut [Rgb]) {
+    fn give(&mut self, number: usize, of: &FirstVertex, parts: &[SharedVertices], radiance: &mut [Rgb]) {
         let (giver, count) = (self.giving[number], self.taking.len());
         let Some(second) = parts[giver].second else { return };
         let seen = &mut self.seen[number * count..][..count];
@@ -218,7 +225,8 @@ impl Reuse {
             seen[own] = second.inside;
         }
         let seen = &*seen;
-        let way = Way { to: second.departure.position(), onward: second.onward, to_light: second.to_light };
+        let way =
+            TargetDirections { to: second.departure.position(), onward: second.onward, to_light: second.to_light };
         self.takers.meet(&way, second.normal, seen, &of.phase, of.here.extinction);
         let (scattering, extinction) = match second.normal {
             None => (of.here.scattering, of.here.extinction),
@@ -242,15 +250,15 @@ impl Reuse {
     }
 
     /// Test the visibility of all pairs.
-    fn look(&mut self, scene: &Scene, parts: &[Parts]) {
+    fn look(&mut self, scene: &Scene, parts: &[SharedVertices]) {
         self.seen.clear();
         for &giver in &self.giving {
             let Some(second) = parts[giver].second else { continue };
             let firsts = self.taking.iter().filter_map(|&taker| parts[taker].first);
             self.rays.clear();
-            let to = |first: &First| second.departure.segment(&RayOrigin::free(first.position));
+            let to = |first: &FirstVertex| second.departure.segment(&RayOrigin::free(first.position));
             self.rays.extend(firsts.clone().map(|first| to(&first)));
-            let faces = |first: &First| {
+            let faces = |first: &FirstVertex| {
                 let way = first.position - second.departure.position();
                 second.normal.is_none_or(|normal| normal.dot(way) > 0.0)
             };

@@ -1,9 +1,9 @@
 //! Paths at their shared vertices.
 
 use super::asking::Asks;
-use super::numbers::Numbers;
+use super::numbers::PathNumbers;
 use super::path_state::PathState;
-use super::reuse::{First, Second};
+use super::reuse::{FirstVertex, SecondVertex};
 use super::scattering::Scattering;
 use super::walker::{ONCE, Walker};
 use raywright_base::math::DVec3;
@@ -49,9 +49,9 @@ impl<A: Asks> Walker<'_, A> {
         path: &mut PathState,
         here: &Scattering,
         hero: usize,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
-    ) -> Option<(Second, bool)> {
+    ) -> Option<(SecondVertex, bool)> {
         if self.settings.max_depth.is_some_and(|most| path.bounce >= most) {
             return None;
         }
@@ -63,12 +63,12 @@ impl<A: Asks> Walker<'_, A> {
         let next = here.sample(&mut || 0.0, numbers.two(u))?;
         let chance = numbers.ray.roulette();
         let goes_on = self.go_on(path, &here, &next, media, numbers.one(chance), self.never_ends());
-        let second = Second::of_medium(here.position(), (to_light, lit), next.wi);
+        let second = SecondVertex::of_medium(here.position(), (to_light, lit), next.wi);
         Some((second, goes_on))
     }
 
     /// Return whether the segment from the first vertex to a surface lies in its medium, or leaves it just once.
-    pub(super) fn is_within_reach(&self, first: &First, path: &PathState) -> bool {
+    pub(super) fn is_within_reach(&self, first: &FirstVertex, path: &PathState) -> bool {
         match path.passed {
             0 => true,
             1 => first.is_alone && path.media.depth() == 0 && self.scene.surrounding().is_none(),

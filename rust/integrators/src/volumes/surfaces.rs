@@ -1,13 +1,13 @@
 //! Classification of hits of rays in media.
 
-use super::asking::{Alone, Asks, at_once};
+use super::asking::{Asks, ImmediateQueries, at_once};
 use super::filled::Filled;
 use crate::nesting::{Boundary, Filling, MediumStack, around};
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Scene, SurfaceInteraction};
 
 /// The classification of a hit.
-pub(crate) enum Met {
+pub(crate) enum ClassifiedHit {
     /// A medium boundary or nothing. The ray continues from this `t` in these media.
     Passed(f64, MediumStack<Filled>),
     /// A surface.
@@ -30,22 +30,28 @@ pub(super) async fn come_to(
     ray: &Ray,
     hit: &Hit,
     media: &MediumStack<Filled>,
-) -> Met {
+) -> ClassifiedHit {
     let Some(window) = around::<Filled>(scene, ray, hit) else {
         let outside = media.ior_around(scene, hit);
-        return Met::Surface { hit: *hit, outside, through: *media, beyond: hit.t.next_up() };
+        return ClassifiedHit::Surface { hit: *hit, outside, through: *media, beyond: hit.t.next_up() };
     };
     let beyond = window.t_max.next_up();
     asks.crossed(&window, |crossed| meet_at(scene, ray, (hit, beyond), media, crossed)).await
 }
 
 /// Classify a hit as [`come_to`] does, for a single ray.
-pub(crate) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> Met {
-    at_once(come_to((scene, Alone(scene)), ray, hit, media))
+pub(crate) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> ClassifiedHit {
+    at_once(come_to((scene, ImmediateQueries(scene)), ray, hit, media))
 }
 
 /// Classify a hit, given all hits at its position and the `t` from which the ray continues.
-fn meet_at(scene: &Scene, ray: &Ray, (hit, beyond): (&Hit, f64), media: &MediumStack<Filled>, crossed: &[Hit]) -> Met {
+fn meet_at(
+    scene: &Scene,
+    ray: &Ray,
+    (hit, beyond): (&Hit, f64),
+    media: &MediumStack<Filled>,
+    crossed: &[Hit],
+) -> ClassifiedHit {
     let through = match Boundary::new(scene, ray, media, crossed) {
         Boundary::None(media) => media,
         Boundary::Between { hit: owner, outside, through } => {
@@ -53,15 +59,15 @@ fn meet_at(scene: &Scene, ray: &Ray, (hit, beyond): (&Hit, f64), media: &MediumS
             let is_matched = material.is_clear() && material.interior().is_some_and(|inside| inside.ior == outside);
             if !is_matched && !material.is_passed() {
                 let is_same = owner.primitive == hit.primitive && owner.inner == hit.inner;
-                return Met::Surface { hit: if is_same { *hit } else { owner }, outside, through, beyond };
+                return ClassifiedHit::Surface { hit: if is_same { *hit } else { owner }, outside, through, beyond };
             }
             through
         }
     };
     let is_sheet = |hit: &&Hit| Filled::of(scene, hit).is_none() && scene.material_of(hit).is_opaque();
     match crossed.iter().find(is_sheet) {
-        Some(sheet) => Met::Surface { hit: *sheet, outside: media.ior_around(scene, sheet), through, beyond },
-        None => Met::Passed(beyond, through),
+        Some(sheet) => ClassifiedHit::Surface { hit: *sheet, outside: media.ior_around(scene, sheet), through, beyond },
+        None => ClassifiedHit::Passed(beyond, through),
     }
 }
 

@@ -4,7 +4,7 @@ use super::asking::at_once;
 use super::course::Course;
 use super::light_end::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::numbers::Numbers;
+use super::numbers::PathNumbers;
 use super::vertex::Vertex;
 use crate::light_paths::{Dimensions, EmissionDimensions, Limits, Onward, weight};
 use crate::{Job, LightWorker, Splat};
@@ -95,7 +95,7 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
         &mut self,
         at: &Vertex<'a>,
         path: &Drifting,
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
         dimensions: Dimensions,
         cancel: &Cancel,
     ) {

@@ -51,7 +51,7 @@ pub(crate) enum Point<'a> {
 }
 
 /// A light vertex as seen from a camera vertex.
-pub(crate) struct Met {
+pub(crate) struct ConnectedVertex {
     /// Share of the flux per solid angle in its direction.
     pub sent: Rgb,
     /// Density with which a camera path from there would continue back along the light path.
@@ -168,16 +168,16 @@ impl<'a> Vertex<'a> {
     }
 
     /// Return this light vertex as seen from a direction and distance.
-    pub fn met_from(&self, direction: DVec3, distance: f64) -> Met {
+    pub fn met_from(&self, direction: DVec3, distance: f64) -> ConnectedVertex {
         match &self.point {
             Point::Surface { arrived, .. } => {
                 let met = arrived.met_from(direction, distance, 0.0);
                 let (value, back) = met.evaluate(arrived.back());
-                Met { sent: arrived.share(direction, || value), back, receiver: met.light_context() }
+                ConnectedVertex { sent: arrived.share(direction, || value), back, receiver: met.light_context() }
             }
             Point::Medium { here, .. } => {
                 let (sent, back) = here.evaluate(direction);
-                Met { sent, back, receiver: here.light_context() }
+                ConnectedVertex { sent, back, receiver: here.light_context() }
             }
         }
     }

@@ -1,15 +1,15 @@
 //! Volumetric camera paths.
 
 use super::asking::Asks;
-use super::course::{Course, Going, Place};
+use super::course::{Course, Going, TraversalEnd};
 use super::filled::Filled;
 use super::known::KnownLight;
-use super::numbers::{Numbers, depth};
+use super::numbers::{PathNumbers, depth};
 use super::path_state::PathState;
-use super::reuse::{First, Parts, Reuse, Second};
+use super::reuse::{FirstVertex, Reuse, SecondVertex, SharedVertices};
 use super::scattering::Scattering;
 use super::together::{Lane, lanes, together};
-use super::{Onwards, Volumes};
+use super::{Onwards, VolumetricPath};
 use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
 use crate::parting::Parting;
@@ -30,7 +30,7 @@ pub(super) const ONCE: (u32, u32) = (0, 1);
 /// A path tracer that is generic over ray intersection.
 #[derive(Clone, Copy)]
 pub(super) struct Walker<'a, A> {
-    pub(super) settings: Volumes,
+    pub(super) settings: VolumetricPath,
     pub(super) scene: &'a Scene,
     /// Footprint of camera rays, if materials need it.
     footprint: Option<Footprint>,
@@ -47,11 +47,11 @@ pub(super) struct Walkers<'a> {
     walker: Walker<'a, ()>,
     reuse: Reuse,
     /// Shared vertices of each path, if any.
-    parts: Vec<Parts>,
+    parts: Vec<SharedVertices>,
 }
 
 /// The span of a ray in a homogeneous medium where it was scattered, and the density of the sampled distance.
-struct Part {
+struct ScatteringSpan {
     span: [f64; 2],
     t: f64,
     density: f64,
@@ -59,7 +59,7 @@ struct Part {
 
 impl<'a> Walkers<'a> {
     pub fn new(
-        settings: Volumes,
+        settings: VolumetricPath,
         (scene, footprint): (&'a Scene, Footprint),
         points: &'a [(DVec3, &'a dyn Light)],
         known: Option<&'a dyn KnownLight>,
@@ -83,7 +83,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         sample: &mut CameraSample,
         media: MediumStack<Filled>,
         waiting: &mut Vec<PathState>,
-        parts: &mut Parts,
+        parts: &mut SharedVertices,
         cancel: &Cancel,
     ) -> Rgb {
         let mut light = Rgb::ZERO;
@@ -93,7 +93,7 @@ impl<'a, A: Asks> Walker<'a, A> {
             Some(known) => known.waves(number),
             None => self.scene.plan().needs().waves.then(|| Waves::of(u)),
         };
-        let mut numbers = Numbers::new(&mut sample.sampler);
+        let mut numbers = PathNumbers::new(&mut sample.sampler);
         // The first wavelength is the hero, unless other paths share the wavelengths: dispersion terminates all but the
         // first. The wavelength that samples distances must be independent of that. For RGB it is any of the three.
         let hero = match (waves, self.known) {
@@ -116,34 +116,34 @@ impl<'a, A: Asks> Walker<'a, A> {
                 let place = self.advance(&mut path, hero, &mut numbers, cancel, light).await;
                 let Some(place) = place else { break };
                 let goes_on = match place {
-                    Place::Medium { here, .. } if self.known.is_some() => {
+                    TraversalEnd::Medium { here, .. } if self.known.is_some() => {
                         *light += self.known_among(&path, &here, number);
                         false
                     }
                     // Only the medium lies between.
-                    Place::Medium { here, collision, .. } if was_first && path.passed == 0 => {
+                    TraversalEnd::Medium { here, collision, .. } if was_first && path.passed == 0 => {
                         path.come_to(collision.t, 0.0);
                         let met = self.scatter_shared(&mut path, &here, hero, &mut numbers, cancel).await;
                         let Some((second, goes_on)) = met else { break };
                         parts.second = Some(second);
                         goes_on
                     }
-                    Place::Medium { here, collision, span } => {
+                    TraversalEnd::Medium { here, collision, span } => {
                         path.come_to(collision.t, 0.0);
                         let takes = self.settings.shares
                             && parts.first.is_none()
                             && !path.has_gamut_excess
-                            && First::may_be(&here);
+                            && FirstVertex::may_be(&here);
                         if takes && collision.density.is_some() {
                             let is_limited = self.settings.max_depth.is_some();
-                            parts.first = Some(First::new(&here, collision.here, &path, is_limited));
+                            parts.first = Some(FirstVertex::new(&here, collision.here, &path, is_limited));
                             path.is_first = true;
                         }
-                        let part = collision.density.map(|density| Part { span, t: collision.t, density });
+                        let part = collision.density.map(|density| ScatteringSpan { span, t: collision.t, density });
                         let part = part.filter(|_| self.is_lit(&path));
                         self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, light).await
                     }
-                    Place::Surface { hit, outside, through } => {
+                    TraversalEnd::Surface { hit, outside, through } => {
                         let (at, of) = ((hit, outside, through), (hero, number));
                         let first = parts.first.filter(|first| was_first && self.is_within_reach(first, &path));
                         let mut second = None;
@@ -154,7 +154,7 @@ impl<'a, A: Asks> Walker<'a, A> {
                         }
                         goes_on
                     }
-                    Place::Outside => false,
+                    TraversalEnd::Outside => false,
                 };
                 if !goes_on {
                     break;
@@ -175,10 +175,10 @@ impl<'a, A: Asks> Walker<'a, A> {
         &self,
         path: &mut PathState,
         hero: usize,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
-    ) -> Option<Place> {
+    ) -> Option<TraversalEnd> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
         let mut going = Going { ray: path.ray, weights: path.weights, media: path.media, passed: 0 };
@@ -187,7 +187,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
         drop(lit);
         (path.ray, path.weights, path.media, path.passed) = (going.ray, going.weights, going.media, going.passed);
-        if let Some(Place::Outside) = place {
+        if let Some(TraversalEnd::Outside) = place {
             *light += path.weights.throughput() * self.light_from_outside(path);
             return None;
         }
@@ -232,9 +232,9 @@ impl<'a, A: Asks> Walker<'a, A> {
         &self,
         path: &mut PathState,
         here: &Scattering,
-        part: Option<Part>,
+        part: Option<ScatteringSpan>,
         hero: usize,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> bool {
@@ -246,7 +246,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         if let Some((drawn, arrives)) = asked {
             let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
             let weight = match (part, place) {
-                (Some(Part { span, t, density }), Some(place)) => {
+                (Some(ScatteringSpan { span, t, density }), Some(place)) => {
                     self.beside_the_way(&path.ray, span, t, density, place)
                 }
                 _ => 1.0,
@@ -267,9 +267,9 @@ impl<'a, A: Asks> Walker<'a, A> {
         (hit, outside, through): (Hit, f64, MediumStack<Filled>),
         (hero, number): (usize, u32),
         waiting: &mut Vec<PathState>,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
-        (shared, mut light): (Option<&mut Option<Second>>, &mut Rgb),
+        (shared, mut light): (Option<&mut Option<SecondVertex>>, &mut Rgb),
     ) -> bool {
         let ray = path.ray;
         let (scene, geometry) = (self.scene, self.scene.geometry());
@@ -298,7 +298,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         }
         path.meet(here.bsdf().repeat_correction());
         if let Some(shared) = shared
-            && let Some(second) = Second::of_surface(&here, path, hit.t)
+            && let Some(second) = SecondVertex::of_surface(&here, path, hit.t)
         {
             path.share();
             light = &mut shared.insert(second).found;
@@ -375,7 +375,7 @@ impl<'a, A: Asks> Walker<'a, A> {
         here: &SurfaceInteraction,
         through: MediumStack<Filled>,
         waiting: &mut Vec<PathState>,
-        numbers: &mut Numbers,
+        numbers: &mut PathNumbers,
     ) {
         for branch in 0..path.splits as u32 {
             // The first branch keeps the path's index.
@@ -457,7 +457,7 @@ impl Walkers<'_> {
         let lanes = lanes(samples.len());
         let radiance = Cell::from_mut(radiance).as_slice_of_cells();
         self.parts.clear();
-        self.parts.resize(if settings.shares { samples.len() } else { 0 }, Parts::default());
+        self.parts.resize(if settings.shares { samples.len() } else { 0 }, SharedVertices::default());
         let left = Cell::from_mut(&mut self.parts[..]).as_slice_of_cells();
         let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance).enumerate());
         together(scene, &lanes, |lane: &Lane| {
@@ -467,7 +467,7 @@ impl Walkers<'_> {
                 while !cancel.is_raised() {
                     let next = to_do.borrow_mut().next();
                     let Some((number, ((sample, media), radiance))) = next else { return };
-                    let mut parts = Parts::default();
+                    let mut parts = SharedVertices::default();
                     radiance.set(walker.follow(sample, media, &mut waiting, &mut parts, cancel).await);
                     if let Some(left) = left.get(number) {
                         left.set(parts);
