@@ -59,7 +59,7 @@ impl<'py> Triples<'py> {
 
 /// The rows of a [`Triples`], shareable between threads.
 #[derive(Clone, Copy)]
-pub enum Rows<'a> {
+pub enum TripleRows<'a> {
     /// float64.
     Double(&'a [[f64; 3]]),
     /// float32.
@@ -98,7 +98,7 @@ impl Row for [f32; 3] {
 
 impl Triples<'_> {
     /// Its rows and, if they are broadcast, the row of each ray.
-    pub fn repeated(&self, name: &str) -> PyResult<(Rows<'_>, Option<Repeats>)> {
+    pub fn repeated(&self, name: &str) -> PyResult<(TripleRows<'_>, Option<Repeats>)> {
         let shape = match self {
             Self::Double(array) => array.shape(),
             Self::Single(array) => array.shape(),
@@ -109,35 +109,39 @@ impl Triples<'_> {
         Ok(match self {
             Self::Double(array) => {
                 let (rows, repeats) = Repeats::of(name, array, 3)?;
-                (Rows::Double(rows.as_chunks().0), repeats)
+                (TripleRows::Double(rows.as_chunks().0), repeats)
             }
             Self::Single(array) => {
                 let (rows, repeats) = Repeats::of(name, array, 3)?;
-                (Rows::Single(rows.as_chunks().0), repeats)
+                (TripleRows::Single(rows.as_chunks().0), repeats)
             }
         })
     }
 
     /// Its rows; `name` is the argument's, for the error if the layout is wrong.
-    pub fn rows(&self, name: &str) -> PyResult<Rows<'_>> {
+    pub fn rows(&self, name: &str) -> PyResult<TripleRows<'_>> {
         Ok(match self {
-            Self::Double(array) => Rows::Double(vectors(name, array)?),
-            Self::Single(array) => Rows::Single(vectors(name, array)?),
+            Self::Double(array) => TripleRows::Double(vectors(name, array)?),
+            Self::Single(array) => TripleRows::Single(vectors(name, array)?),
         })
     }
 }
 
-impl<'a> Rows<'a> {
+impl<'a> TripleRows<'a> {
     /// A range of rows, or the single row for all.
     pub fn some(self, start: usize, count: usize) -> Self {
         match self {
-            Rows::Single(rows) => Rows::Single(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
-            Rows::Double(rows) => Rows::Double(if rows.len() == 1 { rows } else { &rows[start..][..count] }),
+            TripleRows::Single(rows) => {
+                TripleRows::Single(if rows.len() == 1 { rows } else { &rows[start..][..count] })
+            }
+            TripleRows::Double(rows) => {
+                TripleRows::Double(if rows.len() == 1 { rows } else { &rows[start..][..count] })
+            }
         }
     }
 }
 
-impl Rows<'_> {
+impl TripleRows<'_> {
     /// Number of rows.
     pub fn len(&self) -> usize {
         match self {

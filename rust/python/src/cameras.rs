@@ -14,9 +14,9 @@ use raywright::scene::cameras::{
 };
 
 /// Reads a camera from its description and the common parts.
-type Read = fn(&Bound<'_, PyAny>, Body) -> PyResult<Box<dyn Camera>>;
+type ReadCamera = fn(&Bound<'_, PyAny>, Body) -> PyResult<Box<dyn Camera>>;
 
-static KINDS: Kinds<Read> = Kinds::new(
+static KINDS: Kinds<ReadCamera> = Kinds::new(
     "camera must be a raywright camera",
     &[
         ("cameras.perspective", "Camera", perspective),

@@ -1,6 +1,6 @@
 //! Ray arrays in columns, and their closest hits back in arrays.
 
-use super::arrays::Rows;
+use super::arrays::TripleRows;
 use super::hit_parts::{HitParts, Rounded, To};
 use super::rays::{BATCH, RayArrays};
 use raywright::accel::ByColumns;
@@ -78,7 +78,7 @@ const FEW: usize = 256;
 
 /// Buffers of a thread for rays traced together. They are kept, because allocating them takes as long as many rays.
 #[derive(Default)]
-struct Room {
+struct RayBuffers {
     single: [[Vec<f32>; 3]; 2],
     double: [[Vec<f64>; 3]; 2],
     t_min: Vec<f64>,
@@ -99,7 +99,7 @@ struct Answers {
 }
 
 thread_local! {
-    static ROOM: Cell<Option<Box<Room>>> = const { Cell::new(None) };
+    static ROOM: Cell<Option<Box<RayBuffers>>> = const { Cell::new(None) };
 }
 
 /// Number type of vectors.
@@ -142,10 +142,10 @@ fn some<T: Clone + Default>(room: &mut Vec<T>, count: usize) -> &mut [T] {
     &mut room[..count]
 }
 
-fn spread(rows: Rows<'_>) -> RunBounds {
+fn spread(rows: TripleRows<'_>) -> RunBounds {
     match rows {
-        Rows::Single(rows) => RunBounds::of(rows),
-        Rows::Double(rows) => RunBounds::of(rows),
+        TripleRows::Single(rows) => RunBounds::of(rows),
+        TripleRows::Double(rows) => RunBounds::of(rows),
     }
 }
 
@@ -153,13 +153,13 @@ fn spread(rows: Rows<'_>) -> RunBounds {
 fn vectors<'a>(
     single: &'a mut [Vec<f32>; 3],
     double: &'a mut [Vec<f64>; 3],
-    rows: &Rows<'_>,
+    rows: &TripleRows<'_>,
     start: usize,
     part: &RayChunk<'_>,
 ) -> Vectors<'a> {
     match rows {
-        Rows::Single(rows) => Vectors::Single(fill(single, rows, start, part)),
-        Rows::Double(rows) => Vectors::Double(fill(double, rows, start, part)),
+        TripleRows::Single(rows) => Vectors::Single(fill(single, rows, start, part)),
+        TripleRows::Double(rows) => Vectors::Double(fill(double, rows, start, part)),
     }
 }
 
@@ -221,7 +221,7 @@ impl RayArrays<'_> {
         let mut room = ROOM.take().unwrap_or_default();
         for window in (0..count).step_by(WINDOW) {
             let end = count.min(window + WINDOW);
-            let Room { single: [o, d], double: [long_o, long_d], t_min, t_max, answers, gathering } = &mut *room;
+            let RayBuffers { single: [o, d], double: [long_o, long_d], t_min, t_max, answers, gathering } = &mut *room;
             let order = self.gather_near(tree, start + window, end - window, gathering);
             for from in (window..end).step_by(BATCH) {
                 let len = BATCH.min(end - from);
@@ -248,7 +248,7 @@ impl RayArrays<'_> {
         to: &'a mut Gathering,
     ) -> Option<&'a [u16]> {
         let extent = tree.extent()?;
-        let one = |rows: Rows<'_>, i: usize| rows.get(if rows.len() == 1 { 0 } else { start + i });
+        let one = |rows: TripleRows<'_>, i: usize| rows.get(if rows.len() == 1 { 0 } else { start + i });
         let ray = |i: usize| (one(self.origins, i), one(self.directions, i));
         if !self.tiling.is_sequence() || count < FEW || !is_coherent(count, ray, extent) {
             return None;
@@ -261,8 +261,8 @@ impl RayArrays<'_> {
             return None;
         }
         Some(match rows {
-            Rows::Single(rows) => to.of(rows, &spread),
-            Rows::Double(rows) => to.of(rows, &spread),
+            TripleRows::Single(rows) => to.of(rows, &spread),
+            TripleRows::Double(rows) => to.of(rows, &spread),
         })
     }
 

@@ -4,7 +4,7 @@ use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::arrays::{Numbers, Rows, Triples, sealed, unwritten};
+use super::arrays::{Numbers, TripleRows, Triples, sealed, unwritten};
 use super::query::CompiledScene;
 use super::rays::{chunks, each};
 use raywright::accel::Touches;
@@ -26,8 +26,8 @@ fn share(count: usize) -> usize {
 
 /// Cones in array form: each part one for all cones, or one per cone.
 struct ConeArrays<'a> {
-    apexes: Rows<'a>,
-    axes: Rows<'a>,
+    apexes: TripleRows<'a>,
+    axes: TripleRows<'a>,
     angles: &'a [f64],
     most: &'a [f64],
     count: usize,

@@ -12,14 +12,14 @@ use raywright::render::{self, denoise};
 /// halves' means, are (2, H, W, 3).
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Halves<'py> {
+pub struct HalfArrays<'py> {
     quarters: PyReadonlyArrayDyn<'py, f32>,
     variances: PyReadonlyArrayDyn<'py, f32>,
     samples: f64,
     patch: usize,
 }
 
-impl Halves<'_> {
+impl HalfArrays<'_> {
     fn read(&self) -> PyResult<denoise::Halves> {
         let shape = self.quarters.shape();
         let &[4, height, width, 3] = shape else {
@@ -62,10 +62,10 @@ fn flat(pictures: impl IntoIterator<Item = Vec<Rgb>>) -> Vec<f32> {
 }
 
 /// Quarters and variances of a film as arrays of (4, H, W, 3) and (2, H, W, 3).
-pub(super) type Parts<'py> = (Bound<'py, PyArrayDyn<f32>>, Bound<'py, PyArrayDyn<f32>>);
+pub(super) type QuarterArrays<'py> = (Bound<'py, PyArrayDyn<f32>>, Bound<'py, PyArrayDyn<f32>>);
 
 /// The halves of a film, if it keeps them and has enough samples.
-pub(super) fn halves<'py>(py: Python<'py>, film: &render::Film) -> PyResult<Option<Parts<'py>>> {
+pub(super) fn halves<'py>(py: Python<'py>, film: &render::Film) -> PyResult<Option<QuarterArrays<'py>>> {
     let Some(halves) = film.halves() else { return Ok(None) };
     let (height, width) = (halves.height, halves.width);
     let quarters = PyArray1::from_vec(py, flat(halves.quarters)).reshape(&[4, height, width, 3][..])?;
@@ -78,7 +78,7 @@ pub(super) fn halves<'py>(py: Python<'py>, film: &render::Film) -> PyResult<Opti
 #[pyfunction]
 pub fn denoise_candidates<'py>(
     py: Python<'py>,
-    halves: Halves<'py>,
+    halves: HalfArrays<'py>,
     features: PyReadonlyArrayDyn<'py, f64>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f32>>> {
@@ -103,7 +103,7 @@ type Settled<'py> = (Bound<'py, PyArray3<f32>>, Bound<'py, PyArray3<f32>>, (f64,
 #[pyfunction]
 pub fn denoise_settle<'py>(
     py: Python<'py>,
-    halves: Halves<'py>,
+    halves: HalfArrays<'py>,
     candidates: PyReadonlyArrayDyn<'py, f32>,
     threads: Option<usize>,
 ) -> PyResult<Settled<'py>> {

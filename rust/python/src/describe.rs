@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use super::arrays::{Rows, Triples, pairs, rows};
+use super::arrays::{TripleRows, Triples, pairs, rows};
 use super::builds::Builds;
 use super::instances::{self, Wishes};
 use super::kinds::Class;
@@ -157,7 +157,7 @@ impl PyMesh<'_> {
             return Err(PyValueError::new_err(format!("face {face} is {corners:?}, but there are {count} vertices")));
         }
         let (vertices, rounding) = match given {
-            Rows::Double(rows) if precision != Precision::Double => scene::rounded(rows, &faces),
+            TripleRows::Double(rows) if precision != Precision::Double => scene::rounded(rows, &faces),
             given => (given.vertices(), Rounding::default()),
         };
         let normals = self.normals.as_ref().map(|n| n.rows("normals").map(|rows| rows.to_single())).transpose()?;

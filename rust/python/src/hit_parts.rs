@@ -1,7 +1,7 @@
 //! What is written of hits: all that is known of them or some of it, in f64 or f32.
 
 use super::instances;
-use super::rays::Parts;
+use super::rays::SplitOutput;
 use raywright::math::Hit;
 use raywright::scene::Scene;
 
@@ -47,7 +47,7 @@ impl<T: Rounded> To<'_, T> {
     }
 }
 
-impl<T: Rounded> Parts for To<'_, T> {
+impl<T: Rounded> SplitOutput for To<'_, T> {
     fn split(self, at: usize) -> (Self, Self) {
         match self {
             Self::Double(to) => {
@@ -73,7 +73,7 @@ pub struct HitParts<'a> {
     pub instance: Option<&'a mut [i32]>,
 }
 
-impl Parts for HitParts<'_> {
+impl SplitOutput for HitParts<'_> {
     fn split(self, at: usize) -> (Self, Self) {
         let (t, uv) = (self.t.split(at), self.uv.split(at));
         let (shape, primitive) = (self.shape.split(at), self.primitive.split(at));

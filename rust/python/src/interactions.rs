@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::arrays::{Numbers, Triples, numbers, sealed, unwritten};
 use super::query::CompiledScene;
-use super::rays::{Parts, answer, chunks, each, share};
+use super::rays::{SplitOutput, answer, chunks, each, share};
 use raywright::integrators::indices_outside;
 use raywright::math::{DVec3, Hit, Ray};
 use raywright::optics::{Bsdf, BsdfSample, Rgb};
@@ -102,7 +102,7 @@ fn all_filled<'py, const N: usize>(
 /// Several arrays of vectors that are split together.
 struct Columns<'a>(Vec<&'a mut [[f64; 3]]>);
 
-impl Parts for Columns<'_> {
+impl SplitOutput for Columns<'_> {
     fn split(self, at: usize) -> (Self, Self) {
         let (first, others) = self.0.into_iter().map(|column| column.split_at_mut(at)).unzip();
         (Self(first), Self(others))

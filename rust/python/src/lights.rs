@@ -86,9 +86,9 @@ struct PyEmission<'py> {
 }
 
 /// Reads a light or an environment; spectral if the flag is set.
-type Read = fn(&Bound<'_, PyAny>, bool) -> PyResult<Arc<dyn Light>>;
+type ReadLight = fn(&Bound<'_, PyAny>, bool) -> PyResult<Arc<dyn Light>>;
 
-static KINDS: Kinds<Read> = Kinds::new(
+static KINDS: Kinds<ReadLight> = Kinds::new(
     "expected a raywright light",
     &[
         ("lights.point", "PointLight", |light, waves| {

@@ -49,9 +49,9 @@ struct Description<'a, 'py> {
 }
 
 /// Reads a material, or a part made from one.
-type Read<T> = fn(&Description<'_, '_>) -> PyResult<T>;
+type ReadDescription<T> = fn(&Description<'_, '_>) -> PyResult<T>;
 
-static KINDS: Kinds<Read<Arc<dyn Material>>> = Kinds::new(
+static KINDS: Kinds<ReadDescription<Arc<dyn Material>>> = Kinds::new(
     "material must be a raywright material",
     &[
         ("materials.diffuse", "Diffuse", |of| Ok(Arc::new(DiffuseMaterial { reflectance: of.value("reflectance")? }))),
@@ -168,7 +168,7 @@ static KINDS: Kinds<Read<Arc<dyn Material>>> = Kinds::new(
     ],
 );
 
-static FILM_BASES: Kinds<Read<FilmBase>> = Kinds::new(
+static FILM_BASES: Kinds<ReadDescription<FilmBase>> = Kinds::new(
     "base must be a Dielectric or a Conductor",
     &[
         ("materials.dielectric", "Dielectric", |of| Ok(FilmBase::Dielectric(of.dielectric()?))),
@@ -176,7 +176,7 @@ static FILM_BASES: Kinds<Read<FilmBase>> = Kinds::new(
     ],
 );
 
-static TINTED_BASES: Kinds<Read<TintedBase>> = Kinds::new(
+static TINTED_BASES: Kinds<ReadDescription<TintedBase>> = Kinds::new(
     "base must be a Dielectric or a ThinDielectric",
     &[
         ("materials.dielectric", "Dielectric", |of| Ok(TintedBase::Dielectric(of.dielectric()?))),
@@ -224,7 +224,7 @@ impl Description<'_, '_> {
     }
 
     /// Reads the base of a film or a tint, one of several materials.
-    fn base<T>(&self, kinds: &Kinds<Read<T>>) -> PyResult<T> {
+    fn base<T>(&self, kinds: &Kinds<ReadDescription<T>>) -> PyResult<T> {
         let base = self.given.getattr("base")?;
         kinds.reader(&base)?(&Description { all: self.all, given: &base })
     }

@@ -23,14 +23,14 @@ struct PyMedium<'py> {
 }
 
 /// The parts of all media, read.
-struct Parts {
+struct MediumParts {
     absorbs: Tinted,
     scatters: Tinted,
     phase: Phase,
 }
 
 /// Reads a medium; spectral if the flag is set.
-type ReadMedium = fn(&Bound<'_, PyAny>, bool, Parts) -> PyResult<Arc<dyn Medium>>;
+type ReadMedium = fn(&Bound<'_, PyAny>, bool, MediumParts) -> PyResult<Arc<dyn Medium>>;
 
 static KINDS: Kinds<ReadMedium> = Kinds::new(
     "medium must be a raywright medium",
@@ -46,12 +46,12 @@ pub fn read(given: &Bound<'_, PyAny>, waves: bool) -> PyResult<Arc<dyn Medium>> 
     let PyMedium { absorption, scattering, phase } = given.extract()?;
     let absorbs = tint(&absorption, Meaning::Amount, waves)?;
     let scatters = tint(&scattering, Meaning::Amount, waves)?;
-    read(given, waves, Parts { absorbs, scatters, phase: read_phase(&phase)? })
+    read(given, waves, MediumParts { absorbs, scatters, phase: read_phase(&phase)? })
 }
 
 /// A medium that is the same everywhere.
-fn homogeneous(given: &Bound<'_, PyAny>, waves: bool, parts: Parts) -> PyResult<Arc<dyn Medium>> {
-    let Parts { absorbs, scatters, phase } = parts;
+fn homogeneous(given: &Bound<'_, PyAny>, waves: bool, parts: MediumParts) -> PyResult<Arc<dyn Medium>> {
+    let MediumParts { absorbs, scatters, phase } = parts;
     let emission = tint(&given.getattr("emission")?, Meaning::Light, waves)?;
     let medium = Homogeneous::new(absorbs.1, scatters.1, emission.1, phase);
     let medium = Arc::new(medium.ok_or_else(|| PyValueError::new_err("a medium must be finite and not negative"))?);
@@ -71,8 +71,8 @@ fn flat() -> Arc<Spectrum> {
 type Tinted = (Arc<Spectrum>, Rgb);
 
 /// A medium on a grid.
-fn grid(given: &Bound<'_, PyAny>, waves: bool, parts: Parts) -> PyResult<Arc<dyn Medium>> {
-    let Parts { absorbs, scatters, phase } = parts;
+fn grid(given: &Bound<'_, PyAny>, waves: bool, parts: MediumParts) -> PyResult<Arc<dyn Medium>> {
+    let MediumParts { absorbs, scatters, phase } = parts;
     let told = [absorbs, scatters];
     let at = match given.getattr("at")?.extract::<String>()?.as_str() {
         "centers" => At::Centres,

@@ -13,7 +13,7 @@ type PhotonRows<'py> = Bound<'py, PyArray2<f64>>;
 
 /// Positions, directions, normals and powers (K,3); shape_id, primitive, path and bounces (K,); bit masks of the
 /// bounces that were sharp and of those in media (K,); and emitted, escaped and absorbed power.
-type Found<'py> = (
+type PhotonArrays<'py> = (
     (PhotonRows<'py>, PhotonRows<'py>, PhotonRows<'py>, PhotonRows<'py>),
     (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>),
     (Bound<'py, PyArray1<u64>>, Bound<'py, PyArray1<u64>>),
@@ -30,7 +30,7 @@ pub fn photons<'py>(
     roulette_depth: u32,
     seed: u64,
     threads: Option<usize>,
-) -> PyResult<Found<'py>> {
+) -> PyResult<PhotonArrays<'py>> {
     let scene = &scene.get().0;
     if let Some(why) = scene.not_drawn().or_else(|| scene.glow()) {
         return Err(PyValueError::new_err(format!("{why}, and light paths cannot start there")));

@@ -37,10 +37,10 @@ pub struct CompiledScene(
 
 /// Flags of the shapes that count, and whether only front faces do.
 #[derive(FromPyObject)]
-struct Counted(Option<Vec<bool>>, bool);
+struct FilterArgument(Option<Vec<bool>>, bool);
 
-impl From<Counted> for scene::Filter {
-    fn from(Counted(shapes, is_front_only): Counted) -> Self {
+impl From<FilterArgument> for scene::Filter {
+    fn from(FilterArgument(shapes, is_front_only): FilterArgument) -> Self {
         Self { shapes, is_front_only }
     }
 }
@@ -120,7 +120,7 @@ impl CompiledScene {
         py: Python<'py>,
         rays: RayArguments<'py>,
         out: Option<Hits<'py>>,
-        counted: Option<Counted>,
+        counted: Option<FilterArgument>,
         fields: u32,
     ) -> PyResult<Hits<'py>> {
         let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
@@ -181,7 +181,7 @@ impl CompiledScene {
         py: Python<'py>,
         rays: RayArguments<'py>,
         out: Option<Bound<'py, PyArrayDyn<bool>>>,
-        counted: Option<Counted>,
+        counted: Option<FilterArgument>,
     ) -> PyResult<Bound<'py, PyArrayDyn<bool>>> {
         let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let out = out.map_or_else(|| unwritten(py, lead, None), Ok)?;
@@ -246,7 +246,7 @@ impl CompiledScene {
         &self,
         py: Python<'py>,
         rays: RayArguments<'py>,
-        counted: Option<Counted>,
+        counted: Option<FilterArgument>,
     ) -> PyResult<all_hits::AllHits<'py>> {
         all_hits::intersect_all(py, &self.0, &rays.rays()?, rays.threads, counted.map(scene::Filter::from).as_ref())
     }

@@ -5,7 +5,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyFloat;
 
-use super::arrays::{Numbers, Row, Rows, Triples};
+use super::arrays::{Numbers, Row, TripleRows, Triples};
 use super::broadcast::{Repeats, some_of};
 use super::held_rows::Held;
 use raywright::math::ray_sort::WINDOW;
@@ -39,8 +39,8 @@ pub fn sorted_share(count: usize, threads: Option<usize>) -> PyResult<usize> {
 /// A batch of rays in array form: each part one for all rays, or one per ray.
 #[derive(Clone, Copy)]
 pub struct RayArrays<'a> {
-    pub(super) origins: Rows<'a>,
-    pub(super) directions: Rows<'a>,
+    pub(super) origins: TripleRows<'a>,
+    pub(super) directions: TripleRows<'a>,
     pub(super) t_min: &'a [f64],
     pub(super) t_max: &'a [f64],
     time: &'a [f64],
@@ -222,10 +222,10 @@ impl RayArrays<'_> {
             rays.clear();
             // Branches on the float types once, not per ray.
             match (self.origins, self.directions) {
-                (Rows::Single(o), Rows::Single(d)) => self.gather(o, d, start, places, &mut rays),
-                (Rows::Single(o), Rows::Double(d)) => self.gather(o, d, start, places, &mut rays),
-                (Rows::Double(o), Rows::Single(d)) => self.gather(o, d, start, places, &mut rays),
-                (Rows::Double(o), Rows::Double(d)) => self.gather(o, d, start, places, &mut rays),
+                (TripleRows::Single(o), TripleRows::Single(d)) => self.gather(o, d, start, places, &mut rays),
+                (TripleRows::Single(o), TripleRows::Double(d)) => self.gather(o, d, start, places, &mut rays),
+                (TripleRows::Double(o), TripleRows::Single(d)) => self.gather(o, d, start, places, &mut rays),
+                (TripleRows::Double(o), TripleRows::Double(d)) => self.gather(o, d, start, places, &mut rays),
             }
             answer(&rays, places);
         }
@@ -261,18 +261,18 @@ impl RayArrays<'_> {
 }
 
 /// Output arrays that can be split among threads.
-pub trait Parts: Send + Sized {
+pub trait SplitOutput: Send + Sized {
     /// Splits off the part of the first `at` rays.
     fn split(self, at: usize) -> (Self, Self);
 }
 
-impl<T: Send> Parts for &mut [T] {
+impl<T: Send> SplitOutput for &mut [T] {
     fn split(self, at: usize) -> (Self, Self) {
         self.split_at_mut(at)
     }
 }
 
-impl<P: Parts> Parts for Option<P> {
+impl<P: SplitOutput> SplitOutput for Option<P> {
     fn split(self, at: usize) -> (Self, Self) {
         match self.map(|parts| parts.split(at)) {
             Some((first, others)) => (Some(first), Some(others)),
@@ -281,14 +281,14 @@ impl<P: Parts> Parts for Option<P> {
     }
 }
 
-impl<A: Parts, B: Parts> Parts for (A, B) {
+impl<A: SplitOutput, B: SplitOutput> SplitOutput for (A, B) {
     fn split(self, at: usize) -> (Self, Self) {
         let ((a, c), (b, d)) = (self.0.split(at), self.1.split(at));
         ((a, b), (c, d))
     }
 }
 
-impl<A: Parts, B: Parts, C: Parts, D: Parts> Parts for (A, B, C, D) {
+impl<A: SplitOutput, B: SplitOutput, C: SplitOutput, D: SplitOutput> SplitOutput for (A, B, C, D) {
     fn split(self, at: usize) -> (Self, Self) {
         let ((a, e), (b, f), (c, g), (d, h)) = (self.0.split(at), self.1.split(at), self.2.split(at), self.3.split(at));
         ((a, b, c, d), (e, f, g, h))
@@ -296,7 +296,7 @@ impl<A: Parts, B: Parts, C: Parts, D: Parts> Parts for (A, B, C, D) {
 }
 
 /// Fills `n` results, `chunk` at a time, without the interpreter lock and with signal handling.
-pub fn answer<P: Parts>(
+pub fn answer<P: SplitOutput>(
     py: Python<'_>,
     n: usize,
     chunk: usize,

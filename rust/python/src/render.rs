@@ -137,7 +137,7 @@ impl Rendering {
     /// Four independent parts of the samples, (4, H, W, 3), and the variances of the halves that they form, (2, H, W,
     /// 3). `None` if they were not kept, or a part has no whole batch.
     #[getter]
-    fn halves<'py>(&self, py: Python<'py>) -> PyResult<Option<denoise::Parts<'py>>> {
+    fn halves<'py>(&self, py: Python<'py>) -> PyResult<Option<denoise::QuarterArrays<'py>>> {
         denoise::halves(py, &self.0.film)
     }
     #[getter]

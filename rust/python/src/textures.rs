@@ -245,9 +245,9 @@ impl Textures {
 }
 
 /// Reads a texture, given the quantity of its numbers.
-type Read = fn(&Textures, &Bound<'_, PyAny>, Meaning) -> PyResult<Arc<dyn Texture>>;
+type ReadTexture = fn(&Textures, &Bound<'_, PyAny>, Meaning) -> PyResult<Arc<dyn Texture>>;
 
-static KINDS: Kinds<Read> = Kinds::new(
+static KINDS: Kinds<ReadTexture> = Kinds::new(
     "expected a number, 3 or a texture",
     &[
         ("textures.checker", "Checker", |all, of, meaning| all.between(of, meaning, Checker(domain(of)?))),

@@ -30,7 +30,7 @@ pub struct Bvh {
 }
 
 /// Tree layout and traversal.
-enum Tree {
+enum TreeKind {
     /// With this number of children per node, or the best for the SIMD level.
     Wide(Option<usize>),
     Binary(Traversal),
@@ -43,10 +43,10 @@ impl Bvh {
     pub fn build(self, quality: &str, level: Level) -> PyResult<Build> {
         let options = self.options(quality)?;
         Ok(match self.tree(level)? {
-            Tree::Wide(None) => Box::new(move |geometry| trees::over(geometry, &options, level)),
-            Tree::Wide(Some(width)) => Box::new(move |geometry| trees::of_width(width, geometry, &options, level)),
-            Tree::Flat(way) => Box::new(move |geometry| trees::flat(geometry, &options, way, level)),
-            Tree::Binary(way) => Box::new(move |geometry| trees::binary(geometry, &options, way, level)),
+            TreeKind::Wide(None) => Box::new(move |geometry| trees::over(geometry, &options, level)),
+            TreeKind::Wide(Some(width)) => Box::new(move |geometry| trees::of_width(width, geometry, &options, level)),
+            TreeKind::Flat(way) => Box::new(move |geometry| trees::flat(geometry, &options, way, level)),
+            TreeKind::Binary(way) => Box::new(move |geometry| trees::binary(geometry, &options, way, level)),
         })
     }
 
@@ -67,33 +67,33 @@ impl Bvh {
         })
     }
 
-    fn tree(&self, level: Level) -> PyResult<Tree> {
+    fn tree(&self, level: Level) -> PyResult<TreeKind> {
         let orders = match self.orders {
             None | Some(8) => Orders::Eight,
             Some(6) => Orders::Six,
             Some(other) => return Err(PyValueError::new_err(format!("orders is {other}, expected 6 or 8"))),
         };
         Ok(match self.traversal.as_str() {
-            "wide" => Tree::Wide(None),
-            "wide4" => Tree::Wide(Some(4)),
+            "wide" => TreeKind::Wide(None),
+            "wide4" => TreeKind::Wide(Some(4)),
             "wide8" if level.lanes() < 8 => {
                 let name = level.name();
                 return Err(PyValueError::new_err(format!(
                     "traversal \"wide8\" needs AVX2, and kernels run at {name}"
                 )));
             }
-            "wide8" => Tree::Wide(Some(8)),
-            "stack" => Tree::Binary(match self.bounds.as_str() {
+            "wide8" => TreeKind::Wide(Some(8)),
+            "stack" => TreeKind::Binary(match self.bounds.as_str() {
                 "box" => Traversal::Stack(PacketSize::One),
                 "oriented" => Traversal::Oriented,
                 "slabs" => Traversal::Slabs,
                 other => return Err(unknown("bounds", other, &["box", "oriented", "slabs"])),
             }),
-            "packets4" => Tree::Binary(Traversal::Stack(PacketSize::Four)),
-            "packets64" => Tree::Binary(Traversal::Stack(PacketSize::SixtyFour)),
-            "flat" => Tree::Flat(flat::FlatTraversal::Stack),
-            "stackless" => Tree::Flat(flat::FlatTraversal::Stackless),
-            "threaded" => Tree::Binary(Traversal::Threaded(orders)),
+            "packets4" => TreeKind::Binary(Traversal::Stack(PacketSize::Four)),
+            "packets64" => TreeKind::Binary(Traversal::Stack(PacketSize::SixtyFour)),
+            "flat" => TreeKind::Flat(flat::FlatTraversal::Stack),
+            "stackless" => TreeKind::Flat(flat::FlatTraversal::Stackless),
+            "threaded" => TreeKind::Binary(Traversal::Threaded(orders)),
             other => return Err(unknown("traversal", other, &TRAVERSALS)),
         })
     }

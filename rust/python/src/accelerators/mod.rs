@@ -20,9 +20,9 @@ use raywright::simd::Level;
 pub type Build = Box<dyn FnOnce(&dyn Primitives) -> Box<dyn Accelerator> + Send>;
 
 /// Reads an accelerator, given the build effort and the level of its kernels.
-type Read = fn(&Bound<'_, PyAny>, &str, Level) -> PyResult<Build>;
+type ReadAccelerator = fn(&Bound<'_, PyAny>, &str, Level) -> PyResult<Build>;
 
-static KINDS: Kinds<Read> = Kinds::new(
+static KINDS: Kinds<ReadAccelerator> = Kinds::new(
     "accelerator must be one of raywright's",
     &[
         ("accelerators.bvh", "BVH", |of, quality, level| of.extract::<bvh::Bvh>()?.build(quality, level)),
