@@ -1,8 +1,8 @@
 //! Builders and optimizers: every tree is valid and gives the hits of brute force, bit for bit.
 
 use super::triangles::{Random, Triangles, bits, levels};
-use raywright::accel::bvh::build::halves::SplitRule;
 use raywright::accel::bvh::build::morton::Bits;
+use raywright::accel::bvh::build::split_rules::SplitRule;
 use raywright::accel::bvh::build::{Builder, ploc};
 use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
 use raywright::accel::bvh::{self, Options, Quality};

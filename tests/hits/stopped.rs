@@ -1,7 +1,7 @@
 //! Canceled builds: every builder stops soon, with an empty result.
 
 use super::triangles::{Random, Triangles, levels};
-use raywright::accel::bvh::build::{Builder, halves, morton, ploc};
+use raywright::accel::bvh::build::{Builder, morton, ploc, split_rules};
 use raywright::accel::bvh::traverse::{Orders, PacketSize, Traversal};
 use raywright::accel::bvh::{Options, Quality};
 use raywright::accel::walk::{Built, Input, Mailbox};
@@ -62,7 +62,7 @@ fn all() -> Vec<(&'static str, Over)> {
         ("sweep", of(Builder::Sweep, Quality::Balanced)),
         ("morton", of(Builder::Morton(morton::Bits::default()), Quality::Balanced)),
         ("ploc", of(Builder::Ploc { radius: ploc::RADIUS }, Quality::Balanced)),
-        ("medians", of(Builder::Halves(halves::SplitRule::Median), Quality::Balanced)),
+        ("medians", of(Builder::Halves(split_rules::SplitRule::Median), Quality::Balanced)),
         ("stack", binary(Traversal::Stack(PacketSize::One))),
         ("slabs", binary(Traversal::Slabs)),
         ("threads", binary(Traversal::Threaded(Orders::Eight))),

@@ -3,8 +3,8 @@
 use super::numbers::one_of;
 use arbitrary::{Result, Unstructured};
 use raywright::accel::bvh::build::binned::MAX_BINS;
-use raywright::accel::bvh::build::halves::SplitRule;
 use raywright::accel::bvh::build::morton::Bits;
+use raywright::accel::bvh::build::split_rules::SplitRule;
 use raywright::accel::bvh::build::{Builder, ploc};
 use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
 

@@ -4,11 +4,11 @@
 mod arrays;
 mod nodes;
 mod rays;
-mod settle;
+mod refine_candidates;
 mod walks;
 
 pub use arrays::{Flat, FlatInstance, FlatTriangle};
 pub use nodes::FlatNode;
 pub use rays::{FlatRay, flat_ray};
-pub use settle::{CANDIDATES, CERTAIN, NO_CANDIDATE, OVERFLOW, Settled, Settler};
+pub use refine_candidates::{CANDIDATES, CERTAIN, NO_CANDIDATE, OVERFLOW, Settled, Settler};
 pub use walks::{FlatTraversal, build};

@@ -4,7 +4,7 @@
 //! ray reaches later. Here this test is not needed, for the following reason.
 //!
 //! Along axis a, plane i of a grid is at the real number pᵢ = low + i · width. Traversal computes the `t` of that plane
-//! as Tₐ(i), in f32 by one formula (`walk.rs`). That is monotone in i, so the rounded values divide the line of t into
+//! as Tₐ(i), in f32 by one formula (`dda.rs`). That is monotone in i, so the rounded values divide the line of t into
 //! intervals without gaps. Traversal visits every cell with a nonempty interval, the intersection of those of its three
 //! axes. Let a ray hit a primitive at t, in the interval of some cell. In exact arithmetic the ray would be in that
 //! cell at t. With rounding it is at most PAD outside along each axis. A primitive is referenced in every cell that it
@@ -27,6 +27,7 @@
 //! Traversal Algorithm for Ray Tracing", 1987; Cleary and Wyvill, "Analysis of an Algorithm for Fast Ray Tracing Using
 //! Uniform Space Subdivision", 1988.
 
+mod dda;
 mod fill;
 mod halving;
 mod lattice;
@@ -34,7 +35,6 @@ pub mod nested;
 mod overlap;
 mod resolution;
 pub mod uniform;
-mod walk;
 
 pub use resolution::Resolution;
 

@@ -7,11 +7,11 @@
 //! that time is therefore within the content of the inner grid, whose border is beyond that by a margin. So the
 //! argument of the module for one grid holds for nested ones.
 
+use super::dda::Walk;
 use super::fill::{Budget, Filled, expected};
 use super::halving::Halving;
 use super::lattice::{Lattice, Occupied};
 use super::uniform::{around, check_border, present};
-use super::walk::Walk;
 use super::{Resolution, can_step};
 use crate::walk::{Input, Lists, Structure, Walker};
 use crate::{Info, SlabRay};

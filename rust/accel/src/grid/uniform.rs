@@ -1,9 +1,9 @@
 //! Uniform grids.
 
+use super::dda::Walk;
 use super::fill::{Budget, Filled, expected};
 use super::halving::Halving;
 use super::lattice::{Lattice, Occupied};
-use super::walk::Walk;
 use super::{PAD, Resolution, can_step};
 use crate::walk::{Input, Lists, Structure, Walker};
 use crate::{Info, SlabRay};

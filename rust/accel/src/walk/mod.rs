@@ -7,21 +7,21 @@
 //! Rays are in box units, as prepared by [`SlabRay`]. The `t` of a plane is an interval padded at both ends. A
 //! traversal that visits every cell that the ray may enter within these intervals misses nothing.
 
-mod contents;
+mod build_budget;
 mod few_objects;
+mod leaf_contents;
 mod mailbox;
-mod parts;
-mod room;
-mod together;
+mod packet_traversal;
+mod primitive_parts;
 
-pub(super) use contents::Contents;
+pub(super) use build_budget::BuildBudget;
 pub(super) use few_objects::Few;
+pub(super) use leaf_contents::Contents;
 pub use mailbox::Mailbox;
 pub(super) use mailbox::{Mailboxes, Marks};
-pub(super) use parts::{PartPosition, PrimitivePart, SplitPlane};
-pub(super) use room::BuildBudget;
-pub(super) use together::TogetherBatch;
-pub use together::{MOST_TOGETHER, Together};
+pub(super) use packet_traversal::TogetherBatch;
+pub use packet_traversal::{MOST_TOGETHER, Together};
+pub(super) use primitive_parts::{PartPosition, PrimitivePart, SplitPlane};
 
 use super::{Info, NodeBox, Primitives, SlabRay};
 use raywright_base::math::{Aabb, Region};

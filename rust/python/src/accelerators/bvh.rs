@@ -4,8 +4,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::{Build, unknown, within};
-use raywright::accel::bvh::build::halves::SplitRule;
 use raywright::accel::bvh::build::morton::Bits;
+use raywright::accel::bvh::build::split_rules::SplitRule;
 use raywright::accel::bvh::build::{Builder, binned, ploc, spatial};
 use raywright::accel::bvh::optimise::{Optimiser, Optimisers};
 use raywright::accel::bvh::traverse::{Orders, PacketSize, Traversal};

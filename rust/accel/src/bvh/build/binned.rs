@@ -4,8 +4,8 @@
 //! collapse, where the costs of triangle blocks and wide nodes are known.
 
 use super::bins::{Bins, Split};
-use super::part::Subtree;
 use super::reference::{Bounds, Extents, MANY, Reference, median, partition, references};
+use super::subtree::Subtree;
 use super::top_down::{Due, TASK};
 use super::{BinaryBvh, Leaves, Node, spare};
 use raywright_base::math::Aabb;

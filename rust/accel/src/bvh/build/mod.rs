@@ -7,16 +7,16 @@ pub mod binned;
 mod bins;
 mod chop;
 mod chopped;
-pub mod halves;
 mod leaves;
 pub mod morton;
-mod part;
 pub mod ploc;
 pub(super) mod presplit;
 mod radix;
 pub(super) mod reference;
 mod slices;
 pub mod spatial;
+pub mod split_rules;
+mod subtree;
 pub mod sweep;
 #[cfg(test)]
 mod tests;
@@ -26,9 +26,9 @@ pub use leaves::Leaves;
 pub(super) use reference::Bounds;
 
 use super::{BinaryBvh, Node};
-use halves::SplitRule;
 use raywright_base::math::{Aabb, Vec3};
 use raywright_base::work::{Stopped, Work};
+use split_rules::SplitRule;
 use std::borrow::Cow;
 
 /// The geometry inside the boxes, for splitting. Any clipping function implements it.
@@ -153,7 +153,7 @@ impl Builder {
             }
             Self::Morton(bits) => morton::build(boxes, bits, work),
             Self::Ploc { radius } => ploc::build(boxes, &ploc::Options { radius }, work),
-            Self::Halves(way) => halves::build(boxes, way, &leaves, work),
+            Self::Halves(way) => split_rules::build(boxes, way, &leaves, work),
         }
     }
 }

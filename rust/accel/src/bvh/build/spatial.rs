@@ -11,8 +11,8 @@
 use super::binned::{MAX_BINS, Task};
 use super::bins::{BinSide, Split};
 use super::chopped::ChopPlane;
-use super::part::Subtree;
 use super::reference::{Extents, Reference, median, partition, references};
+use super::subtree::Subtree;
 use super::top_down::{Due, TASK};
 use super::{BinaryBvh, Leaves, Shapes, spare};
 use raywright_base::math::Aabb;

@@ -1,6 +1,6 @@
 //! The top-down build of subtrees in parallel, generic over the split criterion.
 
-use super::part::Subtree;
+use super::subtree::Subtree;
 use super::{BinaryBvh, Node};
 use raywright_base::math::Aabb;
 use raywright_base::parallel;

@@ -13,8 +13,8 @@
 //!
 //! Incoherent rays have long and mostly empty ranges: the results are correct, but slow.
 
-use super::columns::{Columns, NearPlane};
-use super::numbered::Numbered;
+use super::numbered_leaves::Numbered;
+use super::ray_columns::{Columns, NearPlane};
 use crate::SlabRay;
 use crate::bvh::Node;
 use crate::walk::{MOST_TOGETHER, Together};

@@ -1,21 +1,21 @@
 //! Textbook traversals of binary BVHs, with single rays or packets.
 
-mod any;
 mod bundle;
-mod columns;
-mod gather;
-mod moving;
-mod numbered;
+mod leaf_merging;
+mod motion_blur;
+mod node_volumes;
+mod numbered_leaves;
+mod occlusion;
 mod ordered;
 mod oriented;
 mod packets;
+mod ray_columns;
 mod slabs;
 mod threaded;
-mod volumes;
 
-pub(crate) use any::larger_first;
-pub(super) use moving::Moving;
-pub(crate) use numbered::Numbered;
+pub(super) use motion_blur::Moving;
+pub(crate) use numbered_leaves::Numbered;
+pub(crate) use occlusion::larger_first;
 use ordered::Ordered;
 pub use ordered::PacketSize;
 pub use threaded::{Orders, Threaded};
@@ -23,7 +23,7 @@ pub use threaded::{Orders, Threaded};
 use super::contents::Contents;
 use super::{BinaryBvh, Options};
 use crate::walk::{Built, Input};
-use gather::{Costs, gather};
+use leaf_merging::{Costs, gather};
 use oriented::Oriented;
 use raywright_base::math::Aabb;
 use slabs::Slabs;

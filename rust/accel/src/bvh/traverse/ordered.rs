@@ -2,9 +2,9 @@
 //! nearer hit was found meanwhile (Kay and Kajiya, "Ray tracing complex scenes", 1986, with a stack instead of their
 //! heap).
 
-use super::any::{Unordered, larger_first};
-use super::numbered::Numbered;
-use super::volumes::{NoVolumes, NodeVolumes, Points};
+use super::node_volumes::{NoVolumes, NodeVolumes, Points};
+use super::numbered_leaves::Numbered;
+use super::occlusion::{Unordered, larger_first};
 use super::{bundle, packets};
 use crate::bvh::BinaryBvh;
 use crate::walk::{Built, Input, Lists, Structure, Together, Walker};

@@ -1,8 +1,8 @@
 //! Oriented bounding boxes: a node has one in addition to its axis-aligned box, if its surface area is smaller
 //! (Gottschalk, Lin and Manocha, "OBBTree: A Hierarchical Structure for Rapid Interference Detection", 1996).
 
-use super::numbered::Numbered;
-use super::volumes::{NOWHERE, NodeVolumes, ObliqueRay, Points, Span, grow};
+use super::node_volumes::{NOWHERE, NodeVolumes, ObliqueRay, Points, Span, grow};
+use super::numbered_leaves::Numbered;
 use crate::SlabRay;
 use raywright_base::math::{DVec3, Vec3};
 use raywright_base::parallel;

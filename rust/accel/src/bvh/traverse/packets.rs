@@ -2,8 +2,8 @@
 //! Wagner, "Interactive Rendering with Coherent Ray Tracing", 2001). Rays that miss are masked. The majority decides
 //! which child comes first, so results for incoherent rays are correct, but slower.
 
-use super::columns::Columns;
-use super::numbered::Numbered;
+use super::numbered_leaves::Numbered;
+use super::ray_columns::Columns;
 use crate::SlabRay;
 use crate::walk::{MOST_TOGETHER, Together};
 use raywright_base::simd::{Dispatch, Kernel, Level, Simd};

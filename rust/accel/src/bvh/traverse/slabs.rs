@@ -1,8 +1,8 @@
 //! Slabs along diagonals: a node has, in addition to its box, intervals along ten more directions, those of a cube's
 //! edge midpoints and corners (Kay and Kajiya, "Ray tracing complex scenes", 1986).
 
-use super::numbered::Numbered;
-use super::volumes::{Across, NOWHERE, NodeVolumes, ObliqueRay, Points, Span, grow};
+use super::node_volumes::{Across, NOWHERE, NodeVolumes, ObliqueRay, Points, Span, grow};
+use super::numbered_leaves::Numbered;
 use crate::SlabRay;
 use raywright_base::math::DVec3;
 use raywright_shapes::oriented_box::DIRECTIONS;

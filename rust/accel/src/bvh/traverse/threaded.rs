@@ -5,7 +5,7 @@
 //! each of six or eight classes of directions (Hachisuka, "Implementing a Photorealistic Rendering System using GLSL",
 //! 2015). In each, the child whose centre is nearer in that direction goes first.
 
-use super::numbered::Numbered;
+use super::numbered_leaves::Numbered;
 use crate::bvh::BinaryBvh;
 use crate::walk::{Built, Input, Structure, Walker};
 use crate::{Info, NodeBox, SlabRay};

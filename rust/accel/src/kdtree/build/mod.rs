@@ -1,6 +1,6 @@
 //! Top-down builders of kd-trees.
 
-mod halves;
+mod middle_splits;
 mod sah;
 
 use super::{MAX_DEPTH, Node, Traversal};
@@ -125,9 +125,8 @@ pub fn build(input: &Input, options: &Options) -> (Vec<Node>, Lists, Aabb) {
     let steps = input.work.steps(BuildBudget::STEPS);
     grown.nodes[0] = match options.builder {
         Builder::Sah => sah::grow(input, options, parts, bounds, room, &mut grown),
-        other => {
-            halves::Halving { input, builder: other, options, steps: &steps }.grow(parts, bounds, room, &mut grown)
-        }
+        other => middle_splits::Halving { input, builder: other, options, steps: &steps }
+            .grow(parts, bounds, room, &mut grown),
     };
     let Grown { nodes, lists } = grown;
     (nodes, lists, bounds)

@@ -2,7 +2,7 @@
 //! interpolation at its time (Glassner, "Spacetime Ray Tracing for Animation", 1988; interpolated boxes as in
 //! Christensen, Fong, Laur and Batali, "Ray Tracing for the Movie 'Cars'", 2006).
 
-use super::numbered::Numbered;
+use super::numbered_leaves::Numbered;
 use crate::bvh::{BinaryBvh, Node};
 use crate::walk::{Built, Input, Structure, Walker};
 use crate::{Info, NodeBox, SlabRay};

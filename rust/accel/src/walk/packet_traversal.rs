@@ -1,7 +1,7 @@
 //! Packet traversal of structures, leaf by leaf. Each ray keeps its own result and limit, and is tested by itself in a
 //! leaf.
 
-use super::contents::{Contents, LeafRay};
+use super::leaf_contents::{Contents, LeafRay};
 use crate::SlabRay;
 use crate::query::Query;
 use raywright_base::math::{Ray, Region};

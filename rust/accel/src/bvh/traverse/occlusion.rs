@@ -2,8 +2,8 @@
 //! since a ray that hits both is more likely to be blocked there. That order is the same for all rays, so it is stored
 //! in the tree.
 
-use super::numbered::Numbered;
-use super::volumes::NodeVolumes;
+use super::node_volumes::NodeVolumes;
+use super::numbered_leaves::Numbered;
 use crate::SlabRay;
 use crate::bvh::BinaryBvh;
 use crate::walk::Walker;

@@ -10,7 +10,7 @@
 //! what remains covers the error of a hit's own `t`, and heights rounded in f64.
 
 use crate::SlabRay;
-use crate::bvh::traverse::numbered::Numbered;
+use crate::bvh::traverse::numbered_leaves::Numbered;
 use crate::walk::{Input, Lists};
 use raywright_base::math::robust::{greater, lesser};
 use raywright_base::math::{DVec3, Vec3};
