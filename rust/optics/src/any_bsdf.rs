@@ -1,6 +1,6 @@
 //! An enum over all kinds of BSDFs.
 
-use super::one_of::one_of;
+use super::bsdf_enum::one_of;
 use super::{
     Beckmann, BlinnPhong, Coated, CoatedOnce, Conductor, Dielectric, Diffuse, Faceted, Filmed, Ggx, LayeredPrincipled,
     LayeredPrincipledThin, MetallicRough, Mirror, Null, Once, OrenNayar, Phong, Principled, PrincipledThin, SoapFilm,

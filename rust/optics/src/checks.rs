@@ -1,7 +1,7 @@
 //! Properties of every kind of BSDF.
 
 use super::conductors::Reflectance;
-use super::losses::Lossy;
+use super::energy_loss::Lossy;
 use super::*;
 use glam::DVec3;
 use proptest::prelude::*;

@@ -4,9 +4,9 @@ mod conductor_lanes;
 
 use super::bsdf::either;
 use super::conductors::{Metal, Reflectance};
+use super::energy_loss::{Lossy, Lost};
 use super::fresnel::ConductorIndex;
 use super::lobes::Grazing;
-use super::losses::{Lossy, Lost};
 use super::mirror::mirrored;
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb};
 use glam::DVec3;

@@ -2,14 +2,14 @@
 
 mod dielectric_lanes;
 mod facet;
-mod open;
+mod masking_shadowing;
 
 use super::bsdf::either;
 use super::conductor::above;
+use super::energy_loss::{Lossy, LostBetween};
+use super::interface_split::{Bare, Share, Split, beyond};
 use super::lobes::Grazing;
-use super::losses::{Lossy, LostBetween};
 use super::mirror::mirrored;
-use super::split::{Bare, Share, Split, beyond};
 use super::{Bsdf, BsdfSample, Facets, Ggx, Rgb, fresnel};
 use facet::{Bent, Divided, Microfacet};
 use raywright_base::math::{DVec3, in_lanes, select};
@@ -137,8 +137,8 @@ impl<F: Lossy, S: Split> Dielectric<F, S> {
     /// Like [`Dielectric::of`], with a given division of light.
     ///
     /// Loss and compensation are those of bare facets. To conserve energy, a film changes the division at a facet only
-    /// for the light that no other facet blocks, reflected or refracted (`open::openness`). Within that part,
-    /// reflection gains the energy that transmission loses.
+    /// for the light that no other facet blocks, reflected or refracted (`masking_shadowing::openness`). Within that
+    /// part, reflection gains the energy that transmission loses.
     pub fn with(eta: f64, facets: Option<F>, split: S) -> Self {
         let eta = fresnel::bounded(eta);
         let facets = facets.filter(|_| (eta - 1.0).abs() >= Self::INVISIBLE);

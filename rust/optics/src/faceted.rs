@@ -1,6 +1,6 @@
 //! Less common BSDFs: other facet distributions, single-scattering facets, principled models and thin films.
 
-use super::one_of::one_of;
+use super::bsdf_enum::one_of;
 use super::{
     Beckmann, Coated, CoatedOnce, Conductor, Dielectric, Filmed, Ggx, LayeredPrincipled, LayeredPrincipledThin, Once,
     Principled, PrincipledThin, SoapFilm, ThinDielectric, Tinted,

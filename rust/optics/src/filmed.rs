@@ -1,8 +1,8 @@
 //! Thin films on dielectrics.
 
 use super::Rgb;
+use super::interface_split::Split;
 use super::spectra::Waves;
-use super::split::Split;
 use super::thin_film::{self, Complex};
 
 /// A film between two dielectrics. Each channel reflects the integral over wavelengths, clamped to [0, 1], and

@@ -1,10 +1,10 @@
 //! The principled BSDFs.
 
 mod coat;
+mod diffuse_part;
+mod facet_albedo;
 mod layered;
 mod layered_thin;
-mod matt;
-mod shares;
 
 use coat::Gtr1;
 pub use layered::LayeredPrincipled;

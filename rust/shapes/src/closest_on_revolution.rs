@@ -6,7 +6,7 @@
 //! that cannot hold the minimum are discarded and the others bisected until each holds one local minimum. There the
 //! offset is at right angles to the motion under rotation.
 
-use super::closest::of_ellipsoid;
+use super::closest_points::of_ellipsoid;
 use raywright_base::math::{Affine, DVec3, Frame};
 use std::f64::consts::TAU;
 

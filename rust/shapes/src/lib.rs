@@ -1,7 +1,7 @@
 //! Floor 1: geometric shapes and their exact intersection with rays.
 
-mod closest;
 mod closest_on_revolution;
+mod closest_points;
 mod cone;
 mod contact;
 mod cuboid;
@@ -32,7 +32,7 @@ mod surfaces;
 mod torus;
 pub mod triangle;
 
-pub use closest::Closest;
+pub use closest_points::Closest;
 pub use contact::{Candidate, Contact};
 pub use cuboid::Cuboid;
 pub use disk::Disk;

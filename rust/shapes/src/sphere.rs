@@ -1,6 +1,6 @@
 //! The sphere.
 
-use super::closest::{of_ellipsoid, of_ellipsoid_under};
+use super::closest_points::{of_ellipsoid, of_ellipsoid_under};
 use super::line::Line;
 use super::meeting::{ball, ball_surface, tell};
 use super::solid::{Meet, Meets, Solid};

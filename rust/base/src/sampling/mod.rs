@@ -4,13 +4,13 @@ mod bits;
 // Used by the tests of all crates; unused code is not linked.
 #[doc(hidden)]
 pub mod chi_square;
-mod columns;
 mod discrete;
 mod halton;
 mod kind;
 mod lattice;
 mod permutation;
 mod philox;
+mod sample_columns;
 mod sampler;
 mod sampler_lanes;
 mod scramble;
@@ -22,9 +22,9 @@ pub mod warp;
 #[cfg(test)]
 mod tests;
 
-pub use columns::SamplerColumns;
 pub use discrete::AliasTable;
 pub use kind::{BatchSize, SamplerKind};
 pub use philox::philox4x32;
+pub use sample_columns::SamplerColumns;
 pub use sampler::{CAMERA_DIMENSIONS, Sampler};
 pub use sampler_lanes::{Pairs, SamplerLanes};

@@ -1,6 +1,6 @@
 //! Generation of the tables, and a test of their contents.
 
-use super::brushed::{self, mean_square, ratio};
+use super::anisotropic::{self, mean_square, ratio};
 use super::cubic::Table;
 use super::quadrature::{direction, even_light, interface_loss, inverse, mirror_loss, reflected_share};
 use super::tables::*;
@@ -51,12 +51,12 @@ fn integrated<F: Facets + Sync>(like: &Tables) -> &'static Tables {
         let a = b * ratio(r);
         let along = if r > 0.0 {
             let scale = (b / a).ln().recip();
-            a * (b / a).powf(inverse(t, |power| brushed::of_along(a * (b / a).powf(power), [a, b], scale)))
+            a * (b / a).powf(inverse(t, |power| anisotropic::of_along(a * (b / a).powf(power), [a, b], scale)))
         } else {
             b
         };
         let sine2 = if r > 0.0 { ((along * along - a * a) / (b * b - a * a)).clamp(0.0, 1.0) } else { t };
-        let w = from(inverse(v, |c| brushed::of_cosine(along, b, c)), along);
+        let w = from(inverse(v, |c| anisotropic::of_cosine(along, b, c)), along);
         let across = a * a * w.x * w.x * (1.0 - sine2) + b * b * w.x * w.x * sine2;
         let most = (across + w.z * w.z * mean_square([a, b])) / (across + w.z * w.z);
         mirror_loss(&F::new([a, b]), DVec3::new(w.x * (1.0 - sine2).sqrt(), w.x * sine2.sqrt(), w.z)) / most

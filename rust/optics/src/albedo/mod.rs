@@ -7,13 +7,13 @@
 //! mostly within 0.0005 of the integral, and within 0.003 everywhere. A table's error becomes the surface's energy
 //! error. Loss and compensation use the same lookup, so the cosine-weighted average is exactly that of the table.
 
-mod alike;
-mod brushed;
+mod anisotropic;
 mod coat;
 mod cubic;
 #[cfg(test)]
 mod entries;
 mod interface;
+mod isotropic;
 mod mirror;
 #[cfg(test)]
 mod quadrature;
@@ -29,8 +29,8 @@ pub use schlick::SchlickShare;
 pub use tables::Tables;
 
 use super::{Beckmann, Facets, Ggx};
-use alike::Alike;
-use brushed::Brushed;
+use anisotropic::Brushed;
+use isotropic::Alike;
 use rough::Rough;
 
 /// A facet distribution with tables.

@@ -3,9 +3,9 @@
 use super::{Conductor, RoughFacets, above, mirrored, mirrors};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
 use crate::conductors::Reflectance;
+use crate::energy_loss::{Lossy, Lost};
 use crate::fresnel::ConductorIndex;
 use crate::lobes::{Grazing, GrazingLanes};
-use crate::losses::{Lossy, Lost};
 use crate::{BsdfSampleLanes, Rgb, RgbLanes};
 use raywright_base::math::{DVec3, InLanes, LANES, VectorLanes};
 use raywright_base::sampling::Pairs;

@@ -3,9 +3,9 @@
 use super::facet::{Bent, Divided, FacetLanes, Microfacet, seen};
 use super::{Dielectric, FacetTerms, KnownLanes, Rough, Single};
 use crate::bsdf_columns::{BsdfColumns, LaneBsdf};
+use crate::energy_loss::{Lossy, LostBetween};
+use crate::interface_split::{Share, Split, beyond};
 use crate::lobes::{Grazing, GrazingLanes};
-use crate::losses::{Lossy, LostBetween};
-use crate::split::{Share, Split, beyond};
 use crate::{BsdfSampleLanes, Facets, Rgb, RgbLanes};
 use raywright_base::math::{DVec3, InLanes, LANES, VectorLanes};
 use raywright_base::sampling::Pairs;

@@ -1,7 +1,7 @@
 //! Scattering by a single facet of a rough interface.
 
-use super::{above, open};
-use crate::split::Share;
+use super::{above, masking_shadowing};
+use crate::interface_split::Share;
 use crate::{Facets, fresnel};
 use raywright_base::math::{DVec3, LANES, in_lanes, select};
 
@@ -90,7 +90,7 @@ impl Microfacet {
         let seen = match divided.bare {
             None => divided.reflectance * self.density * geometry,
             Some(bare) => {
-                let open = open::openness(facets, wo, (wo + wi).normalize(), eta) / (4.0 * o.z);
+                let open = masking_shadowing::openness(facets, wo, (wo + wi).normalize(), eta) / (4.0 * o.z);
                 // The open part cannot exceed the geometry factor, except for rounding.
                 let open = open.min(geometry);
                 (divided.reflectance * open).plus(bare * (geometry - open)) * self.density
@@ -115,7 +115,7 @@ impl Microfacet {
             Some(bare) => {
                 let q = wo + wi * eta;
                 let h = q.normalize() * (q.z * wo.z).signum();
-                let open = (open::openness(facets, wo, h, eta) / wo.z.abs()).min(both);
+                let open = (masking_shadowing::openness(facets, wo, h, eta) / wo.z.abs()).min(both);
                 let rest = (divided.reflectance.rest() * open).plus((1.0 - bare) * (both - open));
                 rest * density * o * i / square
             }

@@ -1,6 +1,6 @@
 //! The energy-conserving principled BSDF.
 
-use super::shares::DielectricShares;
+use super::facet_albedo::DielectricShares;
 use super::{Gtr1, Look};
 use crate::albedo::MirrorLoss;
 use crate::bsdf_columns::LaneBsdf;

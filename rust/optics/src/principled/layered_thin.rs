@@ -1,7 +1,7 @@
 //! The energy-conserving principled BSDF of a thin sheet.
 
 use super::Look;
-use super::shares::DielectricShares;
+use super::facet_albedo::DielectricShares;
 use crate::albedo::MirrorLoss;
 use crate::bsdf_columns::LaneBsdf;
 use crate::conductor::above;

@@ -2,7 +2,7 @@
 //!
 //! Wavelengths are in nm. The visible range is from [`FIRST`] to [`LAST`], where the eye's response is tabulated.
 
-mod any;
+mod any_spectrum;
 mod black_body;
 mod daylight;
 mod linear;
@@ -14,7 +14,7 @@ mod sigmoid;
 mod table;
 mod waves;
 
-pub use any::Spectrum;
+pub use any_spectrum::Spectrum;
 pub use black_body::{COLDEST, black_body, black_body_colour};
 pub use daylight::{daylight, white};
 pub use linear::at;

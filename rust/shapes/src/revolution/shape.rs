@@ -1,8 +1,8 @@
 //! The `Shape` and `Solid` implementations of surfaces of revolution.
 
 use super::{BASE, ProfileCurve, Revolution, SIDE, TIP};
-use crate::closest::of_segment;
 use crate::closest_on_revolution::Around;
+use crate::closest_points::of_segment;
 use crate::line::Line;
 use crate::meeting::tell;
 use crate::solid::{Meets, Solid};

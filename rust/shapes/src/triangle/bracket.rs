@@ -18,8 +18,8 @@
 //! given direction might overflow an f64.
 
 use super::EdgeRay;
+use super::leaf_rows::Rows;
 use super::pretest::{BlockRay, PretestErrors, Weights};
-use super::rows::Rows;
 use raywright_base::simd::Lanes;
 
 /// Conservative results for some triangles and one ray, or one triangle and some rays. Bits above the lanes are

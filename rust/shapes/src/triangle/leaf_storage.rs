@@ -1,8 +1,8 @@
 //! Leaf storage of triangles with f32 or f64 corners.
 
+use super::leaf_rows::Rows;
 use super::leaves::Leaves;
 use super::pretest::{BlockRay, BlockRays};
-use super::rows::Rows;
 use super::{EdgeRay, PlainRays, RAYS};
 use raywright_base::math::{DVec3, Region};
 use raywright_base::parallel;

@@ -2,9 +2,9 @@
 //! and f64 decides the rest.
 
 use super::bracket::Bracket;
+use super::leaf_rows::Rows;
 use super::pretest::{BlockRay, BlockRays, sum};
-use super::rows::Rows;
-use super::spread::Spread;
+use super::spread_triangles::Spread;
 use super::{Column, EdgeRay, PlainRays, RAYS};
 use raywright_base::math::{DVec3, Region};
 use raywright_base::simd::Lanes;

@@ -4,7 +4,7 @@
 //! without branches, so the compiler vectorizes it.
 
 use super::EdgeRay;
-use super::sixteen::{Column, RAYS, bits};
+use super::sixteen_rays::{Column, RAYS, bits};
 use raywright_base::math::robust::greater;
 use raywright_base::math::{RayBatch, Region, Vectors, read_column};
 use raywright_base::simd::Lanes;

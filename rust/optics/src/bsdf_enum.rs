@@ -167,7 +167,7 @@ macro_rules! one_of {
                 value: &mut crate::RgbLanes,
                 pdf: &mut [f64; raywright_base::math::LANES],
             ) {
-                let by_kind = crate::one_of::ByKind::new(&self.kinds, asks);
+                let by_kind = crate::bsdf_enum::ByKind::new(&self.kinds, asks);
                 if !by_kind.is_one() {
                     (*value, *pdf) = (crate::RgbLanes::ZERO, [0.0; raywright_base::math::LANES]);
                 }
@@ -203,7 +203,7 @@ macro_rules! one_of {
                 numbers: (&[f64; raywright_base::math::LANES], &raywright_base::sampling::Pairs),
                 drawn: &mut crate::BsdfSampleLanes,
             ) {
-                let by_kind = crate::one_of::ByKind::new(&self.kinds, asks);
+                let by_kind = crate::bsdf_enum::ByKind::new(&self.kinds, asks);
                 if !by_kind.is_one() {
                     drawn.pdf = [0.0; raywright_base::math::LANES];
                 }

@@ -13,9 +13,9 @@
 //! weights by 104εLE.
 
 use super::bracket::{Bracket, bracket};
+use super::leaf_rows::Rows;
 use super::pretest::{BlockRays, Weights, cross, difference, dot, largest};
-use super::rows::Rows;
-use super::sixteen::RAYS;
+use super::sixteen_rays::RAYS;
 use raywright_base::simd::Lanes;
 
 /// The terms of some triangles that do not depend on the ray's direction; vectors by axis.
