@@ -1,8 +1,8 @@
 //! First hits of a camera by rasterisation: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer
 //! display of curved surfaces", 1974). Every pixel's decision equals that of its ray.
 //!
-//! Each triangle is projected once, to a rectangle of pixels that contains all rays that can hit it (`view.rs`). The
-//! picture is cut into tiles, and the triangles of a tile are processed nearest first. A conservative test rejects
+//! Each triangle is projected once, to a rectangle of pixels that contains all rays that can hit it (`pixel_bounds.rs`).
+//! The picture is cut into tiles, and the triangles of a tile are processed nearest first. A conservative test rejects
 //! pixels that an edge certainly misses, or that are certainly hidden by an earlier hit. For the others the exact
 //! ray-triangle test ([`EdgeRay`]) decides the hit and its `t`, so hits equal those of
 //! [`Scene::intersect`](super::Scene::intersect) bit for bit.
@@ -13,7 +13,7 @@
 
 use super::Scene;
 use super::cameras::{Camera, Perspective};
-use super::view::{Pixels, View};
+use super::pixel_bounds::{Pixels, View};
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, Ray, RayBatch, Tiling};
 use raywright_base::parallel::{self, CHUNK};

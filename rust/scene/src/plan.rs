@@ -2,7 +2,7 @@
 
 use super::materials::BsdfMix;
 use super::media::Medium;
-use super::standing::Standing;
+use super::nested_shapes::Standing;
 use super::textures::Needs;
 use super::{Emission, Geometry, Lights, Material, Rounding};
 use raywright_accel::Primitives;

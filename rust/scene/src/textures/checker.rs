@@ -1,6 +1,6 @@
 //! Checkerboards.
 
-use super::waves::pulse;
+use super::periodic_functions::pulse;
 use super::{Domain, Needs, Pattern, TexturePoint};
 
 /// Unit cells that alternate between 0 and 1 along each axis, box-filtered in closed form, so that they become uniform

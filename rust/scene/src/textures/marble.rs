@@ -1,6 +1,6 @@
 //! Marble.
 
-use super::waves::sine;
+use super::periodic_functions::sine;
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 use std::f64::consts::TAU;
 

@@ -1,15 +1,16 @@
 //! Textures: one interface, and one file each.
 
 mod checker;
+mod color_to_number;
 mod domain;
 mod fbm;
 mod image;
 mod marble;
-mod mean;
 mod mix;
 mod needs;
 mod noise;
 mod pattern;
+mod periodic_functions;
 mod perlin;
 mod picture;
 mod product;
@@ -18,7 +19,6 @@ mod spectral;
 mod stripes;
 mod value;
 mod vertex_colours;
-mod waves;
 mod wood;
 
 pub use checker::Checker;

@@ -1,6 +1,6 @@
 //! Stripes.
 
-use super::waves::pulse;
+use super::periodic_functions::pulse;
 use super::{Domain, Needs, Pattern, TexturePoint};
 
 /// Stripes across the x axis with period 1, box-filtered in closed form.

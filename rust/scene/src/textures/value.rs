@@ -1,6 +1,6 @@
 //! Parameters that are constants or textures.
 
-use super::mean::Mean;
+use super::color_to_number::Mean;
 use super::{Needs, Quantity, Texture, TexturePoint};
 use raywright_optics::Rgb;
 use std::sync::Arc;

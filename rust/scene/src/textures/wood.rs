@@ -1,6 +1,6 @@
 //! Wood.
 
-use super::waves::ramp;
+use super::periodic_functions::ramp;
 use super::{Domain, Needs, Octaves, Pattern, TexturePoint};
 use raywright_base::math::DVec3;
 

@@ -1,7 +1,7 @@
 //! Classification of faces into closed bodies and defects.
 
-mod covered;
 mod edges;
+mod enclosed_area;
 mod junctions;
 mod manifold;
 mod outlines;
@@ -9,7 +9,7 @@ mod patches;
 mod section;
 mod weld;
 
-pub use covered::Rule;
+pub use enclosed_area::Rule;
 pub use section::{Cut, Cutter, Section};
 pub use weld::{joined, rounding, welded};
 

@@ -1,6 +1,6 @@
 //! Plane sections of meshes.
 
-use super::covered::{Rule, covered};
+use super::enclosed_area::{Rule, covered};
 use super::outlines::{Polyline, outlines};
 use super::{FaceKind, Topology, joined};
 use raywright_accel::BoxTree;
