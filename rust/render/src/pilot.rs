@@ -1,10 +1,10 @@
 //! Pilot renders that compare integrator variants on a few parts of a picture.
 
 use super::denominators::FLOOR;
+use super::pass_tiles::{Exposure, Goal, Stop};
 use super::settings::Settings;
 use super::shared_film::{given_back, lent};
 use super::tile::FilmTile;
-use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError};
 use raywright_base::math::Hit;
 use raywright_base::parallel;

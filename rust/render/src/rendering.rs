@@ -3,11 +3,11 @@
 use super::adaptive::Adaptive;
 use super::bytes::{Malformed, Reader, Writer, check};
 use super::error::estimate;
-use super::pooled::{Uncertainty, uncertainty};
+use super::pass_tiles::Goal;
+use super::pooled_variance::{Uncertainty, uncertainty};
 use super::sample_allocation::Epoch;
 use super::shared_film::{LentFilm, Loan};
 use super::tile::FilmTile;
-use super::tiles::Goal;
 use super::{ErrorEstimate, Film, Until};
 use raywright_optics::Rgb;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

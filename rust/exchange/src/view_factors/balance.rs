@@ -1,11 +1,11 @@
 //! Balancing of estimated rows so that they sum to a known value: to one in a closed room.
 
 use super::Sampled;
-use super::by_rays::leaving;
 use super::facet::Facet;
-use super::fronts::Fronts;
+use super::hit_fronts::Fronts;
+use super::proportion_error::Counts;
 use super::reconcile::{Term, reconcile};
-use super::told::Counts;
+use super::row_sampler::leaving;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind};

@@ -1,17 +1,17 @@
 //! The full matrix of view factors: pairs of clusters with potential blockers, down to pairs of faces.
 
 use super::balance::Balance;
-use super::by_rays::{Entry, RowSampler};
 use super::clusters::{Cluster, Clusters};
 use super::coincident::overlap;
 use super::distant::Quadrature;
 use super::facet::Facet;
-use super::fronts::Fronts;
+use super::hit_fronts::Fronts;
 use super::pair::pair;
-use super::partly::Open;
-use super::rounds::{FAINT, Rounds};
+use super::partly_visible_pairs::Open;
+use super::proportion_error::Counts;
+use super::ray_rounds::{FAINT, Rounds};
+use super::row_sampler::{Entry, RowSampler};
 use super::shaft::{Blocker, HalfSpace, between_boxes, between_facets, hides};
-use super::told::Counts;
 use super::{Aim, Sampled, areas, facets};
 use raywright_base::parallel;
 use raywright_base::simd::Level;

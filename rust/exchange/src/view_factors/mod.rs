@@ -1,31 +1,31 @@
 //! View factors: the fraction of diffuse light leaving the front of one face that reaches the front of another.
 
 mod balance;
-mod by_rays;
 mod clusters;
 mod coincident;
 mod contour;
 mod distant;
 mod facet;
-mod flats;
-mod fronts;
+mod flat_faces;
 mod hinge;
+mod hit_fronts;
 mod matrix;
 mod pair;
-mod partly;
-mod pieces;
+mod pair_pieces;
+mod partly_visible_pairs;
+mod proportion_error;
+mod ray_rounds;
 mod reconcile;
-mod rounds;
+mod row_sampler;
 mod shaft;
 mod sparse;
 #[cfg(test)]
 mod tests;
-mod told;
 
 pub use distant::Quadrature;
 pub use facet::Facet;
-pub use flats::{SharedPlane, shared_planes};
-pub use fronts::Fronts;
+pub use flat_faces::{SharedPlane, shared_planes};
+pub use hit_fronts::Fronts;
 pub use matrix::{Matrix, matrix};
 pub use pair::pair;
 pub use sparse::{Sparse, sparse};

@@ -1,7 +1,7 @@
 //! Sparse matrices of view factors for scenes with many faces: rows by ray tracing, with entries for hit faces only.
 
-use super::by_rays::{Entry, RowSampler};
-use super::fronts::Fronts;
+use super::hit_fronts::Fronts;
+use super::row_sampler::{Entry, RowSampler};
 use super::{Aim, facets};
 use raywright_base::parallel;
 use raywright_base::work::{Stopped, Work};

@@ -5,11 +5,11 @@
 //! a picture do not depend on where its samples were taken.
 
 use super::bytes::{Malformed, Reader, Writer, check};
-use super::run::{self, begin};
+use super::pass_tiles::{Exposure, Goal, Stop};
+use super::render_loop::{self, begin};
 use super::sample_allocation::Epoch;
 use super::shared_film::{given_back, lent};
 use super::tile::FilmTile;
-use super::tiles::{Exposure, Goal, Stop};
 use super::{Film, Progress, RenderError, Rendering, Settings};
 use raywright_base::workers::{pool, watched};
 use raywright_integrators::Integrator;
@@ -163,7 +163,7 @@ impl Request {
         settings: &Settings,
         progress: &mut dyn Progress,
     ) -> Result<Vec<u8>, RenderError> {
-        run::check(integrator, (scene, camera), settings, matches!(self.wanted, Wanted::Planned { .. }))?;
+        render_loop::check(integrator, (scene, camera), settings, matches!(self.wanted, Wanted::Planned { .. }))?;
         let stop = Stop::default();
         let (done, goal) = match self.wanted {
             Wanted::Alone(before, samples) => (before, Goal::Even { before, samples }),

@@ -3,9 +3,9 @@
 use super::Sampled;
 use super::distant::Quadrature;
 use super::facet::Facet;
-use super::fronts::Fronts;
-use super::pieces::{PairPiece, Pieces};
-use super::told::Counts;
+use super::hit_fronts::Fronts;
+use super::pair_pieces::{PairPiece, Pieces};
+use super::proportion_error::Counts;
 use raywright_base::math::{DVec3, Ray};
 use raywright_base::sampling::{BatchSize, Sampler, SamplerKind, warp};
 use raywright_scene::{RayOrigin, Scene, SeenTriangle};

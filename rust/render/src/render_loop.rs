@@ -1,6 +1,6 @@
 //! The render loop.
 
-use super::tiles::{Exposure, Stop};
+use super::pass_tiles::{Exposure, Stop};
 use super::{Progress, Rendering, Settings};
 use raywright_base::workers::{Cancel, pool, watched};
 use raywright_integrators::{Integrator, Job, Session};

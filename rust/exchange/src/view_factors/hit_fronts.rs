@@ -1,6 +1,6 @@
 //! The front that a ray hits, also where two faces are back to back or touch front to front.
 
-use super::flats::{FlatPart, SharedPlane, shared_planes};
+use super::flat_faces::{FlatPart, SharedPlane, shared_planes};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind, warp};

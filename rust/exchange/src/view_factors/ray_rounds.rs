@@ -3,8 +3,8 @@
 use super::Aim;
 use super::distant::Quadrature;
 use super::facet::Facet;
-use super::fronts::Fronts;
-use super::partly::{Estimate, Open, Pairs, Round};
+use super::hit_fronts::Fronts;
+use super::partly_visible_pairs::{Estimate, Open, Pairs, Round};
 use raywright_base::parallel;
 use raywright_base::simd::Level;
 use raywright_base::work::{Steps, Stopped, Work};

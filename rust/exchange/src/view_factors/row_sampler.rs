@@ -2,8 +2,8 @@
 
 use super::Aim;
 use super::facet::Facet;
-use super::fronts::Fronts;
-use super::told::Counts;
+use super::hit_fronts::Fronts;
+use super::proportion_error::Counts;
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::sampling::{BatchSize, Sampler, SamplerKind, warp};
