@@ -1,12 +1,12 @@
 //! Light sampling at scattering events.
 
-use super::asking::Asks;
-use super::course::Course;
-use super::filled::Filled;
-use super::numbers::PathNumbers;
+use super::camera_paths::Walker;
+use super::current_medium::Filled;
+use super::medium_traversal::Course;
+use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
-use super::walker::Walker;
-use super::weights::Weights;
+use super::ray_tracer::Asks;
+use super::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::transport::{power_heuristic, share};
 use raywright_base::math::Ray;

@@ -1,12 +1,12 @@
 //! Equiangular sampling of point lights along rays.
 
-use super::asking::Asks;
-use super::course::{Going, OnTheWay};
-use super::numbers::PathNumbers;
+use super::camera_paths::Walker;
+use super::medium_traversal::{Going, OnTheWay};
+use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
+use super::ray_tracer::Asks;
 use super::scattering::Scattering;
-use super::walker::Walker;
-use super::weights::Weights;
+use super::spectral_mis::Weights;
 use crate::transport::power_heuristic;
 use raywright_base::math::{DVec3, Ray};
 use raywright_base::workers::Cancel;

@@ -1,11 +1,11 @@
 //! Tracing of light paths through media, one path at a time.
 
-use super::asking::at_once;
-use super::course::{Course, Going, Nobody, TraversalEnd};
-use super::filled::Filled;
-use super::numbers::{PathNumbers, depth};
+use super::current_medium::Filled;
+use super::medium_traversal::{Course, Going, Nobody, TraversalEnd};
+use super::path_numbers::{PathNumbers, depth};
+use super::ray_tracer::at_once;
+use super::spectral_mis::Weights;
 use super::vertex::{Point, Vertex};
-use super::weights::Weights;
 use crate::light_paths::{Arrived, Dimensions, EmissionDimensions, Limits, Onward, Times};
 use crate::nesting::MediumStack;
 use crate::parting::Parting;

@@ -5,53 +5,53 @@
 //! of the three densities (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014; Miller, Georgiev and Jarosz, "A
 //! Null-Scattering Path Integral Formulation of Light Transport", 2019).
 
-mod asking;
-mod both_ends;
-mod course;
-mod cubic;
+mod batch_executor;
+mod camera_paths;
+mod cubic_segments;
+mod current_medium;
 mod direct_light;
+mod distance_sampling;
 mod equiangular;
-mod fading;
-mod filled;
-mod flight;
-mod gathering;
-mod known;
-mod light_end;
+mod final_gather;
+mod hit_classification;
+mod light_partials;
 mod light_walk;
-mod numbers;
+mod medium_traversal;
 mod optical_depth;
-mod pairs;
+mod path_numbers;
+mod path_reuse;
 mod path_state;
-mod reuse;
+mod point_pairs;
+mod precomputed_light;
+mod ray_tracer;
 mod scattering;
-mod shared;
-mod surfaces;
+mod shared_vertices;
+mod spectral_mis;
 mod to_camera;
-mod together;
+mod transmittance;
 mod vertex;
-mod walker;
-mod weights;
+mod volumetric_bdpt;
 
-pub(super) use both_ends::BothEnds;
-pub(super) use filled::Filled;
-pub(super) use known::KnownLight;
+pub(super) use current_medium::Filled;
+pub(super) use hit_classification::{ClassifiedHit, meet};
 pub(super) use light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-pub(super) use numbers::PathNumbers;
 pub use optical_depth::optical_depths;
-pub(super) use reuse::can_share;
+pub(super) use path_numbers::PathNumbers;
+pub(super) use path_reuse::can_share;
+pub(super) use precomputed_light::KnownLight;
 pub(super) use scattering::Scattering;
-pub(super) use surfaces::{ClassifiedHit, meet};
 pub(super) use to_camera::{Counting, MediaLightPaths};
 pub(super) use vertex::{Point, Vertex};
+pub(super) use volumetric_bdpt::BothEnds;
 
 use super::transport::Gather;
 use super::{Job, Session, Worker};
+use camera_paths::Walkers;
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 use raywright_scene::lights::{Light, Place as LightPlace};
 use raywright_scene::{Footprint, Scene};
 use std::sync::Arc;
-use walker::Walkers;
 
 /// The scattered directions that paths follow.
 #[derive(Clone, Copy, Debug, PartialEq)]

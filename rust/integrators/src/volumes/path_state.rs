@@ -1,7 +1,7 @@
 //! State of volumetric camera paths.
 
-use super::filled::Filled;
-use super::weights::Weights;
+use super::current_medium::Filled;
+use super::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::parting::Parting;
 use raywright_base::math::{DVec3, Ray};
@@ -45,7 +45,7 @@ pub(super) struct PathState {
     /// Footprint at the ray's origin, if texture lookups use it; and the mean curvature of the surface there.
     pub footprint: Footprint,
     pub curvature: f64,
-    /// Number of medium boundaries on this ray ([`super::course::Going::passed`]).
+    /// Number of medium boundaries on this ray ([`super::medium_traversal::Going::passed`]).
     pub passed: u32,
 }
 

@@ -1,10 +1,10 @@
 //! Connections of light paths in media to the camera.
 
-use super::asking::at_once;
-use super::course::Course;
-use super::light_end::LightEnd;
+use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::numbers::PathNumbers;
+use super::medium_traversal::Course;
+use super::path_numbers::PathNumbers;
+use super::ray_tracer::at_once;
 use super::vertex::Vertex;
 use crate::light_paths::{Dimensions, EmissionDimensions, Limits, Onward, weight};
 use crate::{Job, LightWorker, Splat};

@@ -6,8 +6,8 @@
 //! segment. σ is the mean over the wavelengths. The weights of all strategies still sum to 1, as all use the same
 //! densities. Contributions stay as bounded as without media, since their own transmittance is included.
 
-use super::filled::{self, Filled};
-use super::flight::Collision;
+use super::current_medium::{self, Filled};
+use super::distance_sampling::Collision;
 use super::scattering::Scattering;
 use crate::light_paths::{Arrived, Onward, onward_pdf};
 use crate::nesting::MediumStack;
@@ -82,7 +82,8 @@ impl<'a> Vertex<'a> {
         waves: Option<&Waves>,
     ) -> Self {
         let Collision { t, here: medium, came, .. } = *collision;
-        let plain = |_: &Waves| filled::around(scene, &media, &ray).map(|(medium, within)| medium.at(within.at(t)));
+        let plain =
+            |_: &Waves| current_medium::around(scene, &media, &ray).map(|(medium, within)| medium.at(within.at(t)));
         let density = waves.and_then(plain).unwrap_or(medium).extinction.mean();
         Self { point: Point::Medium { here, medium, density, came }, ray, t, media }
     }

@@ -1,8 +1,8 @@
 //! Transmittance along ray segments.
 
-use super::flight::MediumSegment;
-use super::numbers::PathNumbers;
-use super::weights::Weights;
+use super::distance_sampling::MediumSegment;
+use super::path_numbers::PathNumbers;
+use super::spectral_mis::Weights;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::media::Content;

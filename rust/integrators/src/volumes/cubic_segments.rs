@@ -2,9 +2,9 @@
 //!
 //! Their optical depth has a closed form.
 
-use super::flight::{Collision, MediumSegment};
-use super::numbers::PathNumbers;
-use super::weights::Weights;
+use super::distance_sampling::{Collision, MediumSegment};
+use super::path_numbers::PathNumbers;
+use super::spectral_mis::Weights;
 use raywright_optics::Rgb;
 use raywright_scene::media::Cubic;
 

@@ -1,11 +1,11 @@
 //! Paths at their shared vertices.
 
-use super::asking::Asks;
-use super::numbers::PathNumbers;
+use super::camera_paths::{ONCE, Walker};
+use super::path_numbers::PathNumbers;
+use super::path_reuse::{FirstVertex, SecondVertex};
 use super::path_state::PathState;
-use super::reuse::{FirstVertex, SecondVertex};
+use super::ray_tracer::Asks;
 use super::scattering::Scattering;
-use super::walker::{ONCE, Walker};
 use raywright_base::math::DVec3;
 use raywright_base::workers::Cancel;
 use raywright_optics::{BsdfSample, Rgb};

@@ -1,12 +1,12 @@
 //! Medium traversal between scattering events.
 
-use super::asking::{Asks, ImmediateQueries};
-use super::filled::{self, Filled};
-use super::flight::{Collision, MediumSegment};
-use super::numbers::PathNumbers;
+use super::current_medium::{self, Filled};
+use super::distance_sampling::{Collision, MediumSegment};
+use super::hit_classification::{ClassifiedHit, come_to, straight};
+use super::path_numbers::PathNumbers;
+use super::ray_tracer::{Asks, ImmediateQueries};
 use super::scattering::Scattering;
-use super::surfaces::{ClassifiedHit, come_to, straight};
-use super::weights::Weights;
+use super::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::shadows::opacity;
 use raywright_base::math::{Hit, Ray};
@@ -94,7 +94,7 @@ impl<A: Asks> Course<'_, A> {
     ) -> Option<TraversalEnd> {
         let mut start = path.ray.t_min;
         while !cancel.is_raised() {
-            let around = filled::around(self.scene, &path.media, &path.ray);
+            let around = current_medium::around(self.scene, &path.media, &path.ray);
             let scattering = around.as_ref().filter(|(medium, _)| self.scatters && medium.is_even());
             let Self { scatters, roulette, waves, .. } = *self;
             let even = scattering.map(|(medium, within)| {
@@ -181,7 +181,7 @@ impl<A: Asks> Course<'_, A> {
                 }
             }
             let end = if hit.is_hit() { hit.t } else { ray.t_max };
-            if let Some((medium, within)) = filled::around(self.scene, &media, &ray) {
+            if let Some((medium, within)) = current_medium::around(self.scene, &media, &ray) {
                 let span = [start, end];
                 let Self { scatters, roulette, waves, .. } = *self;
                 let flight = MediumSegment { medium, ray: within, span, length, scatters, roulette, waves };

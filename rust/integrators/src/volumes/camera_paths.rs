@@ -1,14 +1,14 @@
 //! Volumetric camera paths.
 
-use super::asking::Asks;
-use super::course::{Course, Going, TraversalEnd};
-use super::filled::Filled;
-use super::known::KnownLight;
-use super::numbers::{PathNumbers, depth};
+use super::batch_executor::{Lane, lanes, together};
+use super::current_medium::Filled;
+use super::medium_traversal::{Course, Going, TraversalEnd};
+use super::path_numbers::{PathNumbers, depth};
+use super::path_reuse::{FirstVertex, Reuse, SecondVertex, SharedVertices};
 use super::path_state::PathState;
-use super::reuse::{FirstVertex, Reuse, SecondVertex, SharedVertices};
+use super::precomputed_light::KnownLight;
+use super::ray_tracer::Asks;
 use super::scattering::Scattering;
-use super::together::{Lane, lanes, together};
 use super::{Onwards, VolumetricPath};
 use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;

@@ -1,6 +1,6 @@
 //! Precomputed light at vertices, as from photon maps.
 
-use super::filled::Filled;
+use super::current_medium::Filled;
 use super::scattering::Scattering;
 use crate::nesting::MediumStack;
 use crate::transport::Visit;

@@ -1,8 +1,8 @@
 //! Path reuse in homogeneous media.
 
-use super::filled::Filled;
-use super::pairs::{Takers, TargetDirections};
+use super::current_medium::Filled;
 use super::path_state::PathState;
+use super::point_pairs::{Takers, TargetDirections};
 use super::scattering::Scattering;
 use crate::nesting::Filling;
 use raywright_base::math::{DVec3, Hit, Ray};

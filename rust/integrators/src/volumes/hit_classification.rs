@@ -1,7 +1,7 @@
 //! Classification of hits of rays in media.
 
-use super::asking::{Asks, ImmediateQueries, at_once};
-use super::filled::Filled;
+use super::current_medium::Filled;
+use super::ray_tracer::{Asks, ImmediateQueries, at_once};
 use crate::nesting::{Boundary, Filling, MediumStack, around};
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Scene, SurfaceInteraction};

@@ -1,7 +1,7 @@
 //! Ray intersection as asynchronous calls.
 //!
 //! A path is written as sequential code that awaits its ray queries. For a single path the result is immediate
-//! ([`ImmediateQueries`]). For a batch of paths (`together.rs`), the pending queries of all are traced together.
+//! ([`ImmediateQueries`]). For a batch of paths (`batch_executor.rs`), the pending queries of all are traced together.
 
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::Scene;

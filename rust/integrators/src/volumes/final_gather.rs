@@ -1,8 +1,8 @@
 //! Paths at vertices with precomputed light: they end there, or continue with final gather rays.
 
+use super::camera_paths::Walker;
 use super::path_state::PathState;
 use super::scattering::Scattering;
-use super::walker::Walker;
 use crate::is_matt;
 use crate::transport::Visit;
 use raywright_optics::Rgb;

@@ -3,14 +3,14 @@
 //! It works as among surfaces alone ([`crate::Bidirectional`]), with points of media as additional vertices, whose MIS
 //! weights are in [`super::vertex`]. Emission of media is found by camera paths alone.
 
-use super::asking::at_once;
-use super::course::{Course, Going, Nobody, TraversalEnd};
-use super::filled::Filled;
-use super::light_end::LightEnd;
+use super::current_medium::Filled;
+use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::numbers::{PathNumbers, depth};
+use super::medium_traversal::{Course, Going, Nobody, TraversalEnd};
+use super::path_numbers::{PathNumbers, depth};
+use super::ray_tracer::at_once;
+use super::spectral_mis::Weights;
 use super::vertex::{Point, Vertex};
-use super::weights::Weights;
 use crate::dimensions::Dimensions;
 use crate::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
 use crate::nesting::MediumStack;

@@ -1,7 +1,7 @@
 //! Distance sampling in a medium.
 
-use super::numbers::PathNumbers;
-use super::weights::Weights;
+use super::path_numbers::PathNumbers;
+use super::spectral_mis::Weights;
 use raywright_base::math::Ray;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
