@@ -2,7 +2,7 @@
 //!
 //! A flat mirror turns a beam into one from the mirror image of the eye. In film coordinates each ray of a beam is
 //! `apex + t · direction(x, y)`. The direction is linear in x and y after any number of mirrors, and of faces of glass
-//! with linearized refraction (`onward.rs`). So all clipping is done in the film plane: straight edges project to
+//! with linearized refraction (`next_beams.rs`). So all clipping is done in the film plane: straight edges project to
 //! straight edges, and 1 / t, the nearness, is linear in x and y on every plane.
 
 use glam::DMat3;

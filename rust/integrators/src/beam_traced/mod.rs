@@ -1,20 +1,20 @@
 //! Beam tracing.
 
 mod beam;
-mod onward;
-mod shading;
-mod shadow;
-mod tree;
-mod visible;
+mod beam_tree;
+mod face_shading;
+mod hidden_surfaces;
+mod next_beams;
+mod shadow_polygons;
 
 use super::{CameraSample, Integrator, Job, Session, Worker};
+use beam_tree::BeamTree;
 use raywright_accel::Primitives;
 use raywright_base::math::convex::{HalfPlane, area, clip};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene, SurfaceInteraction};
-use tree::BeamTree;
 
 /// Beam tracing (Heckbert and Hanrahan, "Beam Tracing Polygonal Objects", 1984): the whole view is one beam instead of
 /// rays. The faces in it divide it into polygons. Flat mirrors reflect these as beams from the mirror image of the eye,

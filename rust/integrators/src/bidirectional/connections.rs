@@ -1,7 +1,7 @@
 //! Connections of camera paths to lights and to light vertices.
 
 use super::PathStrategy;
-use super::eye::{EyePath, EyeVertex};
+use super::camera_paths::{EyePath, EyeVertex};
 use super::light_vertices::LightVertex;
 use super::worker::BidirectionalWorker;
 use crate::light_paths::{of_asked, onward_pdf, weight};

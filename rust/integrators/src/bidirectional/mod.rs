@@ -1,22 +1,22 @@
 //! Bidirectional path tracing and vertex merging.
 
+mod camera_paths;
 mod connections;
-mod eye;
 mod light_vertices;
-mod merging;
 #[cfg(test)]
 mod tests;
+mod vertex_merging;
 mod worker;
 
-pub use merging::Merge;
+pub use vertex_merging::Merge;
 
 use super::light_paths::{LightPaths, Limits, Partials, Weighing, emitters};
 use super::volumes::{BothEnds, Counting, MediaLightPaths};
 use super::{Integrator, Job, LightWorker, Session, Worker};
-use merging::Merging;
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};
 use std::ops::Range;
+use vertex_merging::Merging;
 use worker::BidirectionalWorker;
 
 /// Bidirectional path tracing (Lafortune and Willems, "Bi-Directional Path Tracing", 1993; Veach and Guibas,

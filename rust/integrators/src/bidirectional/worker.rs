@@ -1,8 +1,8 @@
 //! Batches of camera paths, each with a light path.
 
-use super::eye::{EyePath, EyeQueue, EyeVertex};
+use super::camera_paths::{EyePath, EyeQueue, EyeVertex};
 use super::light_vertices::LightVertices;
-use super::merging::{MergeMap, Merging};
+use super::vertex_merging::{MergeMap, Merging};
 use super::{Bidirection, PathStrategy};
 use crate::dimensions::Dimensions;
 use crate::light_paths::{Arrived, LightWalk, Limits, Partial, Partials, Times};

@@ -1,14 +1,14 @@
 //! Path guiding toward light through mirrors and glass.
 
 mod cells;
-mod flight;
 mod lobe;
-mod local;
+mod local_guide;
 mod photon;
+mod photon_tracing;
 #[cfg(test)]
 mod tests;
 
-pub use local::LocalGuide;
+pub use local_guide::LocalGuide;
 
 use cells::Cells;
 use photon::Photon;
@@ -24,10 +24,10 @@ use std::sync::Arc;
 /// A path from a matte surface hits a lamp behind a glass ball only by chance. The smaller the lamp's image, the rarer
 /// are the hits, and the higher their weights: the fireflies of path tracing. Light sampling cannot help, as no
 /// straight segment reaches the lamp. So photons are sent from the lights to specular surfaces, and traced to matte
-/// ones (`flight.rs`). Space is divided into cells of similar numbers of photons (`cells.rs`). Photons of a cell with
-/// the same specular chain are fitted by a sphere that light comes from (`lobe.rs`). A path samples the cones to these
-/// spheres or its BSDF, and is weighted by the density of the mixture (`local.rs`). So missing or inaccurate photons
-/// add noise but no bias, and no part of the guide has to be exact.
+/// ones (`photon_tracing.rs`). Space is divided into cells of similar numbers of photons (`cells.rs`). Photons of a
+/// cell with the same specular chain are fitted by a sphere that light comes from (`lobe.rs`). A path samples the cones
+/// to these spheres or its BSDF, and is weighted by the density of the mixture (`local_guide.rs`). So missing or
+/// inaccurate photons add noise but no bias, and no part of the guide has to be exact.
 ///
 /// It depends on the scene alone, neither on the camera nor on the number of threads.
 #[derive(Debug)]
@@ -40,8 +40,8 @@ impl Guide {
     /// arrives through specular surfaces, or after a cancellation.
     pub fn of(scene: &Scene, cancel: &Cancel) -> Option<Arc<Self>> {
         let sent = || {
-            let photons = flight::photons(scene, cancel)?;
-            let usual = flight::usual(scene, &photons);
+            let photons = photon_tracing::photons(scene, cancel)?;
+            let usual = photon_tracing::usual(scene, &photons);
             Some(Self::new(photons, usual).map(Arc::new))
         };
         scene.kept(sent).and_then(|guide| (*guide).clone())

@@ -2,9 +2,9 @@
 
 use super::Guide;
 use super::cells::Cells;
-use super::flight::photons;
 use super::lobe::Lobe;
 use super::photon::Photon;
+use super::photon_tracing::photons;
 use raywright_base::math::DVec3;
 use raywright_base::sampling::{Sampler, warp};
 use raywright_base::simd::Level;

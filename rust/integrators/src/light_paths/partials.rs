@@ -1,8 +1,8 @@
 //! MIS partials of light paths.
 
 use super::adjoint::{AdjointInteraction, Arrived, Onward};
-use super::walk::Flying;
-use super::weights::Partial;
+use super::light_walk::Flying;
+use super::mis_weights::Partial;
 use crate::is_matt;
 use raywright_scene::{EmissionDensity, EmissionSample, Emitters};
 

@@ -2,9 +2,9 @@
 
 use super::adjoint::{Arrived, Onward};
 use super::dimensions::{Dimensions, EmissionDimensions};
+use super::light_walk::{Flying, LightWalk, Limits, Visitor};
+use super::mis_weights::weight;
 use super::partials::Partials;
-use super::walk::{Flying, LightWalk, Limits, Visitor};
-use super::weights::weight;
 use crate::nesting::MediumStack;
 use crate::shadows::Shadows;
 use crate::{Job, LightWorker, Splat};

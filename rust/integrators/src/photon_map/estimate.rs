@@ -1,8 +1,8 @@
 //! Radiance estimates from surface photons.
 
 use super::kernel::Kernel;
-use super::maps::PhotonIndex;
 use super::photon::StoredPhoton;
+use super::photon_tracing::PhotonIndex;
 use crate::transport::Visit;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Interaction, SurfaceInteraction};

@@ -3,28 +3,28 @@
 //! share of a lookup disk (`cover`), the maps of one picture (`series`, `store`), and the integrator sessions
 //! (`session`).
 
-mod among;
-mod cover;
+mod disk_coverage;
 mod estimate;
-mod grid;
+mod hashed_grid;
 mod kd_tree;
 mod kernel;
-mod maps;
+mod map_cache;
+mod map_series;
 mod photon;
-mod places;
+mod photon_lookup;
+mod photon_tracing;
 mod radius;
-mod series;
 mod session;
-mod store;
+mod volume_estimate;
 mod volume_photon;
 
-pub(super) use cover::cover;
-pub(super) use grid::HashedGrid;
+pub(super) use disk_coverage::cover;
+pub(super) use hashed_grid::HashedGrid;
 pub use kernel::Kernel;
-pub(super) use maps::flown;
+pub(super) use map_cache::PhotonCount;
+pub(super) use map_series::{MapSchedule, Sending, Series};
 pub(super) use photon::StoredPhoton;
-pub(super) use series::{MapSchedule, Sending, Series};
-pub(super) use store::PhotonCount;
+pub(super) use photon_tracing::flown;
 
 use super::light_paths::Limits;
 use super::{Integrator, Job, Session};

@@ -1,13 +1,13 @@
 //! Integrator sessions of photon mapping.
 
-use super::among::room;
-use super::cover::cover;
+use super::disk_coverage::cover;
 use super::estimate::Estimate;
 use super::kernel::Kernel;
-use super::maps::{Maps, PhotonIndex, fly};
+use super::map_cache::Suitable;
+use super::map_series::{Sending, Series};
+use super::photon_tracing::{Maps, PhotonIndex, fly};
 use super::radius::NEIGHBOURS;
-use super::series::{Sending, Series};
-use super::store::Suitable;
+use super::volume_estimate::room;
 use super::volume_photon::VolumeIndex;
 use crate::light_paths::Limits;
 use crate::nesting::MediumStack;

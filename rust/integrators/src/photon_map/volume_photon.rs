@@ -1,6 +1,6 @@
 //! Compact storage of photons in media.
 
-use super::places::Places;
+use super::photon_lookup::Places;
 use crate::nesting::MediumStack;
 use crate::volumes::{Filled, Scattering};
 use raywright_base::math::{DVec3, Vec3};

@@ -1,21 +1,21 @@
 //! Previews: a ray and at most one shadow ray a pixel, shaded by Lambert's law. The stages of a tile follow upon each
 //! other while its rays and hits are in a near cache.
 
-mod light;
 mod pixel;
-mod room;
+mod shadow_rays;
+mod tile_buffers;
 
-pub use light::PreviewLight;
 pub use pixel::Pixel;
+pub use shadow_rays::PreviewLight;
 
-use light::{towards_eye, towards_point, towards_sun};
 use raywright_accel::ByColumns;
 use raywright_base::math::{Hit, HitColumns, LANES, Ray, gather};
 use raywright_base::simd::Level;
 use raywright_optics::Bsdf;
 use raywright_scene::{Camera, CameraRayLanes, RayOrigin, Scene, ShadingPoint};
-use room::{HitBlock, TileBuffers};
+use shadow_rays::{towards_eye, towards_point, towards_sun};
 use std::cell::Cell;
+use tile_buffers::{HitBlock, TileBuffers};
 
 /// Pixels of a tile: some columns of a band.
 const TILE: usize = 1024;

@@ -2,10 +2,10 @@
 
 use super::BeamTraced;
 use super::beam::{Beam, LEAST, Origin, VisibleFace};
-use super::onward::Onward;
-use super::shading::FilmHit;
-use super::shadow::Shadows;
-use super::visible::visible;
+use super::face_shading::FilmHit;
+use super::hidden_surfaces::visible;
+use super::next_beams::Onward;
+use super::shadow_polygons::Shadows;
 use crate::Job;
 use raywright_accel::Primitives;
 use raywright_base::math::convex::{Convex, area};

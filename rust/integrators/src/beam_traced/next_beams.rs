@@ -7,7 +7,7 @@
 //! within the tolerance.
 
 use super::beam::{Beam, ON_LINE, Origin, VisibleFace};
-use super::shading::FilmHit;
+use super::face_shading::FilmHit;
 use crate::Job;
 use raywright_base::math::convex::{Convex, HalfPlane, centroid, cut};
 use raywright_base::math::{DVec2, DVec3};

@@ -1,8 +1,8 @@
 //! The sequence of photon maps of one picture.
 
-use super::maps::{PhotonPass, fly};
+use super::map_cache::{Key, MapStore, PhotonCount, Suitable};
+use super::photon_tracing::{PhotonPass, fly};
 use super::radius::{Radii, first};
-use super::store::{Key, MapStore, PhotonCount, Suitable};
 use crate::Job;
 use crate::light_paths::Limits;
 use raywright_base::math::DVec3;

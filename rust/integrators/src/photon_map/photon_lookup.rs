@@ -1,6 +1,6 @@
 //! Photon lookup by position.
 
-use super::grid::HashedGrid;
+use super::hashed_grid::HashedGrid;
 use super::kd_tree::PointKdTree;
 use raywright_base::math::DVec3;
 

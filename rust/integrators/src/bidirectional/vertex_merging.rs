@@ -1,6 +1,6 @@
 //! Vertex merging of camera paths with photons.
 
-use super::eye::{EyePath, EyeVertex};
+use super::camera_paths::{EyePath, EyeVertex};
 use crate::light_paths::{Arrived, Dimensions, Flying, Limits, Onward, Partial, Partials, Visitor, of_merged};
 use crate::nesting::MediumStack;
 use crate::photon_map::{HashedGrid, Kernel, MapSchedule, PhotonCount, Sending, Series, StoredPhoton, cover, flown};

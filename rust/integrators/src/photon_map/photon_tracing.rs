@@ -1,8 +1,8 @@
 //! Photon tracing.
 
+use super::map_cache::PhotonCount;
 use super::photon::StoredPhoton;
-use super::places::Places;
-use super::store::PhotonCount;
+use super::photon_lookup::Places;
 use super::volume_photon::{VolumeIndex, VolumePhoton};
 use crate::is_matt;
 use crate::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Times, Visitor};
