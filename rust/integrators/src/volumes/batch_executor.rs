@@ -1,6 +1,6 @@
 //! Batch execution of paths: the pending ray queries of all are traced together.
 
-use super::ray_tracer::Asks;
+use super::ray_tracer::TraceRays;
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::Scene;
 use std::cell::{Cell, RefCell};
@@ -39,7 +39,7 @@ impl Lane {
     }
 }
 
-impl Asks for &Lane {
+impl TraceRays for &Lane {
     async fn first(self, ray: &Ray) -> Hit {
         self.ask(Asked::First(*ray)).await;
         self.hit.get()

@@ -2,12 +2,12 @@
 
 use super::batch_executor::{Lane, lanes, together};
 use super::current_medium::Filled;
-use super::medium_traversal::{Course, Going, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
 use super::path_numbers::{PathNumbers, depth};
 use super::path_reuse::{FirstVertex, Reuse, SecondVertex, SharedVertices};
 use super::path_state::PathState;
 use super::precomputed_light::KnownLight;
-use super::ray_tracer::Asks;
+use super::ray_tracer::TraceRays;
 use super::scattering::Scattering;
 use super::{Onwards, VolumetricPath};
 use crate::dimensions::Dimensions;
@@ -70,7 +70,7 @@ impl<'a> Walkers<'a> {
     }
 }
 
-impl<'a, A: Asks> Walker<'a, A> {
+impl<'a, A: TraceRays> Walker<'a, A> {
     /// Return whether paths continue in all scattered directions.
     pub(super) fn follows_all(&self) -> bool {
         self.settings.onwards == Onwards::All
@@ -165,8 +165,8 @@ impl<'a, A: Asks> Walker<'a, A> {
     }
 
     /// Return the medium traversal of the path's wavelengths.
-    pub(super) fn course(&self, waves: Option<Waves>) -> Course<'a, A> {
-        Course { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, roulette: false, waves }
+    pub(super) fn course(&self, waves: Option<Waves>) -> MediumTraversal<'a, A> {
+        MediumTraversal { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, roulette: false, waves }
     }
 
     /// Advance a path along its ray to its next scattering event. Return `None` if it leaves the scene, after adding
@@ -181,7 +181,7 @@ impl<'a, A: Asks> Walker<'a, A> {
     ) -> Option<TraversalEnd> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
-        let mut going = Going { ray: path.ray, weights: path.weights, media: path.media, passed: 0 };
+        let mut going = RaySegmentState { ray: path.ray, weights: path.weights, media: path.media, passed: 0 };
         let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
         let course = self.course(path.waves);
         let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;

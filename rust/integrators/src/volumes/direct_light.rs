@@ -2,10 +2,10 @@
 
 use super::camera_paths::Walker;
 use super::current_medium::Filled;
-use super::medium_traversal::Course;
+use super::medium_traversal::MediumTraversal;
 use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
-use super::ray_tracer::Asks;
+use super::ray_tracer::TraceRays;
 use super::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::transport::{power_heuristic, share};
@@ -14,7 +14,7 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Interaction, LightSample, LightSampleContext};
 
-impl<A: Asks> Walker<'_, A> {
+impl<A: TraceRays> Walker<'_, A> {
     /// Sample a light at a vertex (next-event estimation) and return the light that arrives. `through` are the media of
     /// rays that leave to the other side, if any do. The sample is one of a number, stratified over the lights.
     pub(super) async fn direct_light(
@@ -62,7 +62,7 @@ impl<A: Asks> Walker<'_, A> {
         // Sampling a direction never hits a point light or a directional light.
         let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
-        let course = Course { roulette: here.light_context().is_free(), ..self.course(path.waves) };
+        let course = MediumTraversal { roulette: here.light_context().is_free(), ..self.course(path.waves) };
         course.shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
         let asked = weights.asked.mean();
         Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))

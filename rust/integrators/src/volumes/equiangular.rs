@@ -1,10 +1,10 @@
 //! Equiangular sampling of point lights along rays.
 
 use super::camera_paths::Walker;
-use super::medium_traversal::{Going, OnTheWay};
+use super::medium_traversal::{OnTheWay, RaySegmentState};
 use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
-use super::ray_tracer::Asks;
+use super::ray_tracer::TraceRays;
 use super::scattering::Scattering;
 use super::spectral_mis::Weights;
 use crate::transport::power_heuristic;
@@ -54,21 +54,21 @@ struct OfPoints<'p, 'a, A> {
     cancel: &'p Cancel,
 }
 
-impl<A: Asks> OnTheWay for OfPoints<'_, '_, A> {
+impl<A: TraceRays> OnTheWay for OfPoints<'_, '_, A> {
     async fn add(
         &self,
-        now: &Going,
+        now: &RaySegmentState,
         span: [f64; 2],
         (here, phase): (&Coefficients, Phase),
         numbers: &mut PathNumbers<'_>,
     ) -> Rgb {
-        let Going { ray, weights, media, .. } = *now;
+        let RaySegmentState { ray, weights, media, .. } = *now;
         let path = PathState { ray, weights, media, ..*self.path };
         self.walker.lit_on_the_way(&path, span, here, phase, self.hero, numbers, self.cancel).await
     }
 }
 
-impl<'a, A: Asks> Walker<'a, A> {
+impl<'a, A: TraceRays> Walker<'a, A> {
     /// Return the adder of point lights for a path.
     pub(super) fn of_points<'p>(
         &'p self,

@@ -1,7 +1,7 @@
 //! Classification of hits of rays in media.
 
 use super::current_medium::Filled;
-use super::ray_tracer::{Asks, ImmediateQueries, at_once};
+use super::ray_tracer::{ImmediateQueries, TraceRays, at_once};
 use crate::nesting::{Boundary, Filling, MediumStack, around};
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Scene, SurfaceInteraction};
@@ -26,7 +26,7 @@ pub(crate) enum ClassifiedHit {
 /// Classify a hit of a ray in given media. A boundary that neither reflects nor refracts is no surface, unless an open
 /// surface coincides with it, such as the floor under smoke.
 pub(super) async fn come_to(
-    (scene, asks): (&Scene, impl Asks),
+    (scene, asks): (&Scene, impl TraceRays),
     ray: &Ray,
     hit: &Hit,
     media: &MediumStack<Filled>,

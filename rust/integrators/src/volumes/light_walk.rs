@@ -1,7 +1,7 @@
 //! Tracing of light paths through media, one path at a time.
 
 use super::current_medium::Filled;
-use super::medium_traversal::{Course, Going, Nobody, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
 use super::path_numbers::{PathNumbers, depth};
 use super::ray_tracer::at_once;
 use super::spectral_mis::Weights;
@@ -36,7 +36,7 @@ pub(crate) struct MediaLightWalk<'a> {
 pub(crate) struct Drifting {
     /// Index within the batch.
     pub number: u32,
-    pub going: Going,
+    pub going: RaySegmentState,
     /// Wavelength that samples distances.
     pub hero: usize,
     /// Largest channel of the initial flux.
@@ -118,8 +118,8 @@ impl<'a> MediaLightWalk<'a> {
         self.waves.extend(waves);
     }
 
-    fn course(&self, path: &Drifting) -> Course<'a> {
-        Course::alone(self.scene, path.waves())
+    fn course(&self, path: &Drifting) -> MediumTraversal<'a> {
+        MediumTraversal::alone(self.scene, path.waves())
     }
 
     /// Trace one path per sampler to its end.
@@ -141,7 +141,7 @@ impl<'a> MediaLightWalk<'a> {
             let sampler = &mut paths[number as usize];
             let hero = ((sampler.one(EmissionDimensions::HERO) * 3.0) as usize).min(2);
             let weights = Weights { carried: light.weight, ..Weights::START };
-            let going = Going { ray, weights, media, passed: 0 };
+            let going = RaySegmentState { ray, weights, media, passed: 0 };
             let again = Rgb::ONE;
             let (bounce, is_sharp, is_adrift, held, single) = (0, false, false, 0, false);
             let waves = self.waves.get(number as usize).copied();
@@ -179,7 +179,7 @@ impl<'a> MediaLightWalk<'a> {
             let place = at_once(course.advance(going, (hero, way), &mut numbers, cancel, &mut glow, lit));
             let taken = if place.is_some() { before - path.flux() } else { before };
             visitor.absorb(taken);
-            let Going { ray, media, .. } = path.going;
+            let RaySegmentState { ray, media, .. } = path.going;
             let mut waiting = None;
             let at = match place {
                 None => return,

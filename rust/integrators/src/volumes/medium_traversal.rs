@@ -4,7 +4,7 @@ use super::current_medium::{self, Filled};
 use super::distance_sampling::{Collision, MediumSegment};
 use super::hit_classification::{ClassifiedHit, come_to, straight};
 use super::path_numbers::PathNumbers;
-use super::ray_tracer::{Asks, ImmediateQueries};
+use super::ray_tracer::{ImmediateQueries, TraceRays};
 use super::scattering::Scattering;
 use super::spectral_mis::Weights;
 use crate::nesting::MediumStack;
@@ -18,7 +18,7 @@ use raywright_scene::media::Coefficients;
 
 /// Constant parameters of a traversal.
 #[derive(Clone, Copy)]
-pub(crate) struct Course<'a, A = ImmediateQueries<'a>> {
+pub(crate) struct MediumTraversal<'a, A = ImmediateQueries<'a>> {
     pub scene: &'a Scene,
     /// Ray intersection.
     pub asks: A,
@@ -33,7 +33,7 @@ pub(crate) struct Course<'a, A = ImmediateQueries<'a>> {
 
 /// The state of a traversal: ray, path weights and media.
 #[derive(Clone, Copy)]
-pub(crate) struct Going {
+pub(crate) struct RaySegmentState {
     pub ray: Ray,
     pub weights: Weights,
     pub media: MediumStack<Filled>,
@@ -56,7 +56,7 @@ pub(super) trait OnTheWay {
     /// Return the light on a span of the ray in a homogeneous scattering medium.
     async fn add(
         &self,
-        now: &Going,
+        now: &RaySegmentState,
         span: [f64; 2],
         here: (&Coefficients, Phase),
         numbers: &mut PathNumbers<'_>,
@@ -67,25 +67,25 @@ pub(super) trait OnTheWay {
 pub(super) struct Nobody;
 
 impl OnTheWay for Nobody {
-    async fn add(&self, _: &Going, _: [f64; 2], _: (&Coefficients, Phase), _: &mut PathNumbers<'_>) -> Rgb {
+    async fn add(&self, _: &RaySegmentState, _: [f64; 2], _: (&Coefficients, Phase), _: &mut PathNumbers<'_>) -> Rgb {
         Rgb::ZERO
     }
 }
 
-impl<'a> Course<'a> {
+impl<'a> MediumTraversal<'a> {
     /// Make a traversal for a single path.
     pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
         Self { scene, asks: ImmediateQueries(scene), scatters: true, roulette: false, waves }
     }
 }
 
-impl<A: Asks> Course<'_, A> {
+impl<A: TraceRays> MediumTraversal<'_, A> {
     /// Advance a path along its ray to the next scattering event; `None` if its weight is zero. `way` is the optical
     /// depth of its hero before the event, sampled once for all media along the ray. Emission along the way is added to
     /// `light`.
     pub async fn advance(
         &self,
-        path: &mut Going,
+        path: &mut RaySegmentState,
         (hero, mut way): (usize, f64),
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,

@@ -45,7 +45,7 @@ pub(super) struct PathState {
     /// Footprint at the ray's origin, if texture lookups use it; and the mean curvature of the surface there.
     pub footprint: Footprint,
     pub curvature: f64,
-    /// Number of medium boundaries on this ray ([`super::medium_traversal::Going::passed`]).
+    /// Number of medium boundaries on this ray ([`super::medium_traversal::RaySegmentState::passed`]).
     pub passed: u32,
 }
 

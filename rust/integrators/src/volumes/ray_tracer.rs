@@ -10,7 +10,7 @@ use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 
 /// Ray queries. All implementations return the same results.
-pub(crate) trait Asks: Copy {
+pub(crate) trait TraceRays: Copy {
     /// Return the first hit of a ray.
     async fn first(self, ray: &Ray) -> Hit;
 
@@ -22,7 +22,7 @@ pub(crate) trait Asks: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct ImmediateQueries<'a>(pub &'a Scene);
 
-impl Asks for ImmediateQueries<'_> {
+impl TraceRays for ImmediateQueries<'_> {
     async fn first(self, ray: &Ray) -> Hit {
         self.0.intersect_one(ray)
     }

@@ -4,7 +4,7 @@ use super::camera_paths::{ONCE, Walker};
 use super::path_numbers::PathNumbers;
 use super::path_reuse::{FirstVertex, SecondVertex};
 use super::path_state::PathState;
-use super::ray_tracer::Asks;
+use super::ray_tracer::TraceRays;
 use super::scattering::Scattering;
 use raywright_base::math::DVec3;
 use raywright_base::workers::Cancel;
@@ -42,7 +42,7 @@ impl Interaction for AllWays {
     }
 }
 
-impl<A: Asks> Walker<'_, A> {
+impl<A: TraceRays> Walker<'_, A> {
     /// Scatter a path at a shared vertex and return whether it continues.
     pub(super) async fn scatter_shared(
         &self,

@@ -2,7 +2,7 @@
 
 use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::medium_traversal::Course;
+use super::medium_traversal::MediumTraversal;
 use super::path_numbers::PathNumbers;
 use super::ray_tracer::at_once;
 use super::vertex::Vertex;
@@ -124,7 +124,7 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
             return;
         }
         let segment = at.leaving(at.origin().segment(&RayOrigin::free(seen.origin)), Ray::NO_TRIANGLE);
-        let course = Course { roulette: at.is_in_medium(), ..Course::alone(scene, path.waves()) };
+        let course = MediumTraversal { roulette: at.is_in_medium(), ..MediumTraversal::alone(scene, path.waves()) };
         let light = at_once(course.through(light, segment, at.media(direction), numbers, cancel));
         let light = path.waves().map_or(light, |waves| waves.seen(light));
         if light != Rgb::ZERO && light.is_finite() {

@@ -6,7 +6,7 @@
 use super::current_medium::Filled;
 use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::medium_traversal::{Course, Going, Nobody, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
 use super::path_numbers::{PathNumbers, depth};
 use super::ray_tracer::at_once;
 use super::spectral_mis::Weights;
@@ -61,7 +61,7 @@ struct LightVertices<'a> {
 
 /// A camera path.
 struct EyePath {
-    going: Going,
+    going: RaySegmentState,
     scale: f64,
     bounce: u32,
     has_gamut_excess: bool,
@@ -163,8 +163,8 @@ impl<'a> BothEnds<'a> {
         }
     }
 
-    fn course(&self, waves: Option<Waves>) -> Course<'a> {
-        Course::alone(self.job.scene, waves)
+    fn course(&self, waves: Option<Waves>) -> MediumTraversal<'a> {
+        MediumTraversal::alone(self.job.scene, waves)
     }
 
     /// Return the weight of a strategy if only one is shown: 1 or 0.
@@ -189,7 +189,7 @@ impl<'a> BothEnds<'a> {
         let mut numbers = PathNumbers::apart(&mut sample.sampler);
         // This choice must be independent of the wavelengths' own: dispersion keeps the first.
         let hero = if waves.is_some() { numbers.hero() } else { hero };
-        let going = Going { ray: sample.ray, weights: Weights::START, media, passed: 0 };
+        let going = RaySegmentState { ray: sample.ray, weights: Weights::START, media, passed: 0 };
         let partial = Partial::of_camera(self.paths, 0.0);
         let (normal, single) = (DVec3::ZERO, false);
         let footprint = self.job.footprint;
@@ -218,7 +218,7 @@ impl<'a> BothEnds<'a> {
         let course = self.course(path.waves_with(false));
         let lit = None::<&Nobody>;
         let place = at_once(course.advance(&mut path.going, way, sample.numbers, sample.cancel, light, lit));
-        let Going { ray, media, .. } = path.going;
+        let RaySegmentState { ray, media, .. } = path.going;
         let mut parting = None;
         let at = match place {
             None => return false,
@@ -411,7 +411,7 @@ impl<'a> BothEnds<'a> {
             return Rgb::ZERO;
         }
         let media = at.media(ray.direction);
-        let course = Course { roulette, ..self.course(waves) };
+        let course = MediumTraversal { roulette, ..self.course(waves) };
         let light = at_once(course.through(light, ray, media, sample.numbers, sample.cancel));
         if light.is_finite() { light } else { Rgb::ZERO }
     }
