@@ -9,9 +9,6 @@ use crate::house::{code, rust_files, without_tests};
 /// Names that every room may have: a tree's node, and the options of a builder.
 const COMMON: [&str; 2] = ["Node", "Options"];
 
-/// Names that stand three times or more, and how often; these numbers only fall.
-const ALLOWED: &[(&str, usize)] = &[("Boxes", 3)];
-
 #[test]
 fn no_type_name_stands_three_times() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("rust");
@@ -33,11 +30,9 @@ fn no_type_name_stands_three_times() {
         files.retain(|file| !tests.iter().any(|test| root.join(file).with_extension("").starts_with(test)));
     }
     assert!(places.len() > 500, "too few types: {}", places.len());
-    let allowed: BTreeMap<&str, usize> = ALLOWED.iter().copied().collect();
-    let most = |name: &str| allowed.get(name).copied().unwrap_or(2);
     let told: String = places
         .iter()
-        .filter(|(name, files)| !COMMON.contains(&name.as_str()) && files.len() > most(name))
+        .filter(|(name, files)| !COMMON.contains(&name.as_str()) && files.len() > 2)
         .map(|(name, files)| format!("  {name}, {} times: {}\n", files.len(), files.join(", ")))
         .collect();
     assert!(told.is_empty(), "names of types that stand too often; take the field's term for the newest:\n{told}");

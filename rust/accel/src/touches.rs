@@ -60,7 +60,7 @@ impl Touches {
 
 /// A cone prepared for box tests.
 #[derive(Clone, Copy, Debug)]
-pub struct Boxes {
+pub struct ConeBoxTest {
     cone: SolidCone,
     apex: DVec3,
     /// The factor from box units to those of `apex`.
@@ -72,7 +72,7 @@ pub struct Boxes {
 /// Distance from the cone beyond which a box is rejected, if the largest coordinate lies in [1, 2).
 const PAD: f64 = 1.0 / (1u64 << 41) as f64;
 
-impl Boxes {
+impl ConeBoxTest {
     /// Prepare a cone for the boxes of a region, along a tree's own axes if given. None if its apex in box units
     /// overflows an f64; then no box can be rejected.
     pub fn new(axes: Option<&Axes>, cone: &SolidCone, region: &Region) -> Option<Self> {
@@ -142,11 +142,11 @@ mod tests {
             let p = apex + (cone.axis * turned.cos() + side * turned.sin()) * t * away;
             let bounds = region.aabb([p, p + low.min(DVec3::ZERO), p + high.max(DVec3::ZERO)]);
             let planes = std::array::from_fn(|axis| [[bounds.min[axis]; 1], [bounds.max[axis]; 1]]);
-            prop_assert_eq!(Boxes::new(None, &cone, &region).unwrap().may_touch(&planes), 1);
+            prop_assert_eq!(ConeBoxTest::new(None, &cone, &region).unwrap().may_touch(&planes), 1);
             // The box is also accepted within the distance of the point.
             let mut near = cone;
             near.most = (p - apex).length();
-            prop_assert_eq!(Boxes::new(None, &near, &region).unwrap().may_touch(&planes), 1);
+            prop_assert_eq!(ConeBoxTest::new(None, &near, &region).unwrap().may_touch(&planes), 1);
         }
     }
 
@@ -163,7 +163,7 @@ mod tests {
             })
         };
         let planes: [[[f32; 7]; 2]; 3] = std::array::from_fn(|axis| std::array::from_fn(|side| of(axis, side)));
-        assert_eq!(Boxes::new(None, &cone, &region).unwrap().may_touch(&planes), 0b010_0011);
+        assert_eq!(ConeBoxTest::new(None, &cone, &region).unwrap().may_touch(&planes), 0b010_0011);
     }
 
     #[test]

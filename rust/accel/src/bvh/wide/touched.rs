@@ -2,7 +2,7 @@
 
 use super::WideBvh;
 use super::node::Child;
-use crate::touches::{Boxes, Touch, Touches};
+use crate::touches::{ConeBoxTest, Touch, Touches};
 use raywright_base::simd::{Kernel, Simd};
 use raywright_shapes::triangle::{Leaves, SolidCone};
 
@@ -37,7 +37,7 @@ fn walk<const N: usize, L: Leaves<N>>(
     stack: &mut Vec<u32>,
     touches: &mut Vec<Touch>,
 ) {
-    let boxes = Boxes::new(bvh.axes.as_ref(), cone, &bvh.region);
+    let boxes = ConeBoxTest::new(bvh.axes.as_ref(), cone, &bvh.region);
     stack.extend((!bvh.nodes.is_empty()).then_some(0));
     while let Some(index) = stack.pop() {
         let node = &bvh.nodes[index as usize];
