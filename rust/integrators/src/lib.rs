@@ -13,8 +13,6 @@ mod guiding;
 mod light_paths;
 mod light_traced;
 mod nesting;
-mod parting;
-mod passing;
 mod path;
 mod path_sharing;
 mod photon_map;
@@ -25,6 +23,8 @@ mod ray_cast;
 mod resampling;
 mod roulette;
 mod shadows;
+mod skip_intersections;
+mod terminate_wavelengths;
 #[cfg(test)]
 mod tests;
 mod transparent;

@@ -1,12 +1,12 @@
 //! Bounding volume hierarchies: binary trees for builders, and wide trees for traversal.
 
-mod axes;
+mod box_coverage;
 pub mod build;
-mod contents;
 mod node;
 pub mod optimise;
-mod parts;
 mod quality;
+mod rotated_axes;
+mod split_geometry;
 pub mod traverse;
 mod wide;
 

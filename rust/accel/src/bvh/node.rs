@@ -1,6 +1,6 @@
 //! The binary BVH of all builders, with 32-byte nodes.
 
-use super::parts::cover;
+use super::box_coverage::cover;
 use raywright_base::math::{Aabb, Vec3};
 
 /// A node of a binary tree: half a cache line, so that siblings share one.

@@ -2,7 +2,7 @@
 
 use crate::light_paths::{Arrived, Partial};
 use crate::nesting::MediumStack;
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use raywright_base::math::{DVec3, Ray, RayQueue};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
@@ -19,7 +19,7 @@ pub(super) struct EyePath {
     /// Number of surface bounces.
     pub bounce: u32,
     pub media: MediumStack,
-    /// Random number for masks, as in [`crate::passing::Passing::meet`].
+    /// Random number for masks, as in [`crate::skip_intersections::Passing::meet`].
     pub chance: f64,
     /// Width and spread of the ray at its origin.
     pub footprint: Footprint,

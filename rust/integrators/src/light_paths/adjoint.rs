@@ -11,7 +11,7 @@
 //! bent toward the viewer. The BSDF is always evaluated as for the viewer. Its evaluation from the light's side only
 //! guides sampling.
 
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf};
 use raywright_optics::spectra::Waves;

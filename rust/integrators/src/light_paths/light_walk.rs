@@ -3,8 +3,8 @@
 use super::adjoint::{Arrived, Onward};
 use super::dimensions::{Dimensions, EmissionDimensions};
 use crate::nesting::MediumStack;
-use crate::parting::Parting;
-use crate::passing::{Met, Passing};
+use crate::skip_intersections::{Met, Passing};
+use crate::terminate_wavelengths::Parting;
 use crate::{is_matt, roulette};
 use raywright_base::math::{Hit, Ray, RayQueue};
 use raywright_base::sampling::Sampler;

@@ -6,7 +6,7 @@ use super::worker::TransportWorker;
 use crate::CameraSample;
 use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
-use crate::passing::Met;
+use crate::skip_intersections::Met;
 use raywright_base::math::Ray;
 use raywright_optics::Rgb;
 use raywright_scene::Plan;

@@ -3,7 +3,7 @@
 use super::guided::Arrival;
 use super::path_state::PathState;
 use crate::dimensions::Dimensions;
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use crate::{CameraSample, LocalGuide};
 use raywright_base::math::{Hit, LANES, Ray, RayLanes, VectorLanes};
 use raywright_base::sampling::SamplerLanes;

@@ -3,7 +3,7 @@
 use crate::CameraSample;
 use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
-use crate::passing::{Met, Passing};
+use crate::skip_intersections::{Met, Passing};
 use raywright_base::math::{Hit, RayQueue};
 use raywright_scene::Scene;
 

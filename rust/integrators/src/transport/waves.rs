@@ -5,7 +5,7 @@ use super::path_state::PathState;
 use super::worker::TransportWorker;
 use crate::CameraSample;
 use crate::dimensions::Dimensions;
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use raywright_base::math::LANES;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{BsdfSample, Dispersive, Rgb};

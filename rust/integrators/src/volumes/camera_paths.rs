@@ -12,7 +12,7 @@ use super::scattering::Scattering;
 use super::{Onwards, VolumetricPath};
 use crate::dimensions::Dimensions;
 use crate::nesting::MediumStack;
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use crate::transport::{power_heuristic, widened};
 use crate::{CameraSample, Worker, roulette};
 use raywright_base::math::{DVec3, Hit, Ray};

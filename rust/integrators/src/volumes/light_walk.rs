@@ -8,7 +8,7 @@ use super::spectral_mis::Weights;
 use super::vertex::{Point, Vertex};
 use crate::light_paths::{Arrived, Dimensions, EmissionDimensions, Limits, Onward, Times};
 use crate::nesting::MediumStack;
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use crate::{is_matt, roulette};
 use raywright_base::math::Ray;
 use raywright_base::sampling::Sampler;

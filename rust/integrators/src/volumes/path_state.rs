@@ -3,7 +3,7 @@
 use super::current_medium::Filled;
 use super::spectral_mis::Weights;
 use crate::nesting::MediumStack;
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{BsdfSample, Rgb};

@@ -14,7 +14,7 @@ use super::vertex::{Point, Vertex};
 use crate::dimensions::Dimensions;
 use crate::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
 use crate::nesting::MediumStack;
-use crate::parting::Parting;
+use crate::terminate_wavelengths::Parting;
 use crate::transport::widened;
 use crate::{CameraSample, Job, Worker, roulette};
 use raywright_base::math::{DVec3, Ray};

@@ -20,7 +20,7 @@ use ordered::Ordered;
 pub use ordered::PacketSize;
 pub use threaded::{Orders, Threaded};
 
-use super::contents::Contents;
+use super::split_geometry::Contents;
 use super::{BinaryBvh, Options};
 use crate::walk::{Built, Input};
 use leaf_merging::{Costs, gather};

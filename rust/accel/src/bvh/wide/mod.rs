@@ -23,12 +23,12 @@ mod step;
 mod touched;
 mod wave;
 
-use super::axes;
+use super::box_coverage::cover;
 use super::build::presplit::Total;
 use super::build::{Builder, Leaves as LeafRule};
-use super::contents::Contents;
 use super::optimise::Optimisers;
-use super::parts::cover;
+use super::rotated_axes;
+use super::split_geometry::Contents;
 use super::{Cuts, Quality, Steps};
 use crate::query::{Answers, Query};
 use crate::{Boxes, ByColumns, Info, Nearest, PrimitiveFilter, Primitives, Touches};
@@ -172,13 +172,13 @@ fn turned(
     boxes: &[Aabb],
     work: Work,
 ) -> Result<Option<(Axes, Vec<Aabb>)>, Stopped> {
-    let Some(axes) = axes::find(boxes, |p| primitives.corners(p).map(|c| region.to_box(c))) else {
+    let Some(axes) = rotated_axes::find(boxes, |p| primitives.corners(p).map(|c| region.to_box(c))) else {
         return Ok(None);
     };
     let along = work.collect(boxes.len(), |p| aabb(primitives, region, Some(&axes), p as u32))?;
     // The sample misses primitives with a small box along the scene's axes and a large one along others.
     let area = |boxes: &[Aabb]| Total::of(boxes).area;
-    let is_worthwhile = area(&along) <= axes::WORTHWHILE * Axes::SCALE * Axes::SCALE * area(boxes);
+    let is_worthwhile = area(&along) <= rotated_axes::WORTHWHILE * Axes::SCALE * Axes::SCALE * area(boxes);
     Ok(is_worthwhile.then_some((axes, along)))
 }
 
