@@ -12,13 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..descriptions import changed
 from ..io.pictures import check_writable
 from ..materials import Diffuse
 from ..mesh_files.meshes import load
 from ..query.surface_points import SurfacePoints
 from ..scene.scene import Scene
 from ..shapes.joined import joined
-from ..shapes.mesh import Mesh, replaced
+from ..shapes.mesh import Mesh
 from .options import finite, number
 from .places import Sites, of_faces, of_file, of_vertices
 from .tables import SUFFIXES, write
@@ -349,7 +350,7 @@ def _output(options: argparse.Namespace) -> Path | None:
 
 def _mesh(path: str) -> Mesh:
     """Return all of a file as one mesh, whatever its materials."""
-    meshes = [replaced(mesh, material=Diffuse(), emission=None) for mesh in load(path)]
+    meshes = [changed(mesh, material=Diffuse(), emission=None) for mesh in load(path)]
     return joined(meshes) if len(meshes) > 1 else meshes[0]
 
 

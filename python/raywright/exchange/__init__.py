@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .radiative import RadiativeExchange
 from .solution import RadiositySolution, RadiosityStep
-from .view_factors import ViewFactors
+from .view_factor_matrix import ViewFactors
 
 __all__ = [
     "RadiativeExchange",

@@ -9,7 +9,8 @@ from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .problem import EMITTED, ESCAPED, REPLICATES, Problem
 from .solution import Floats, RadiositySolution
-from .view_factors import ViewFactors, view_factors
+from .view_factor_matrix import ViewFactors
+from .view_factors import view_factors
 
 # The matrix and its factors take 24 bytes per entry: 1.6 GB.
 _MOST = 8192

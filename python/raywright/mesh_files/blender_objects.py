@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..shapes.mesh import Mesh, continued
+from ..shapes.mesh import Mesh
+from ..shapes.mesh_changes import continued
 from ..shapes.sources import named
 from .blender_materials import pbr_of
 from .pbr import Pbr

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..materials import Diffuse, Material
-from ..shapes.mesh import Mesh, continued
+from ..shapes.mesh import Mesh
+from ..shapes.mesh_changes import continued
 from ..textures import ImageTexture
 from .look import Look, color_look
 from .pbr import Pbr, Picture

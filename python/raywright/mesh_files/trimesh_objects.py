@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..io.quiet import warn_caller
-from ..shapes.mesh import Mesh, continued
+from ..shapes.mesh import Mesh
+from ..shapes.mesh_changes import continued
 from .looks import look_of
 from .polygons import LeftOut
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .aovs import AOVS
+from .error_estimate import ErrorEstimate
 from .filters import (
     BlackmanHarrisFilter,
     BoxFilter,
@@ -13,7 +14,7 @@ from .filters import (
     TriangleFilter,
 )
 from .halves import Halves
-from .image import ErrorEstimate, Image
+from .image import Image
 from .plan import Choice, RenderPlan
 from .render_setup import RenderSetup
 from .samplers import Halton, Independent, Lattice, Sobol, Stratified

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..scene.scene import Scene
-from .image import HISTORY, ErrorEstimate, Image
+from .error_estimate import ErrorEstimate
+from .image import HISTORY, Image
 from .plan import RenderPlan
 
 

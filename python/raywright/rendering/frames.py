@@ -18,7 +18,8 @@ from ..cameras import AnyCamera
 from ..io.pictures import check_writable
 from ..io.tone import DEFAULT, check_tone
 from ..scene.scene import Scene
-from .image import HISTORY, ErrorEstimate, Image
+from .error_estimate import ErrorEstimate
+from .image import HISTORY, Image
 from .render import render
 
 Frame = tuple[Scene, AnyCamera]

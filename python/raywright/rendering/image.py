@@ -13,75 +13,16 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from .. import _core
-from ..arrays import frozen, number, thread_limit
+from ..arrays import frozen, number, same, thread_limit
 from ..io import pictures, shown
 from ..io.tone import DEFAULT, check_tone
 from .denoising import check_method, denoised
+from .error_estimate import ErrorEstimate
 from .halves import Halves
 from .plan import Choice, RenderPlan
 
 _UNSURE = "few samples tell the error of the denoised picture: it cannot be trusted yet"
 HISTORY = np.dtype([("seconds", np.float64), ("samples", np.int64), ("error", np.float64)])
-
-
-@dataclass(frozen=True, eq=False)
-class ErrorEstimate:
-    """An estimate of the relative mean squared error (relMSE) of a picture, with its 95 % interval.
-
-    relMSE is the mean of (x - ref)² / (ref² + 0.01) over pixels and channels. ``float()`` gives the estimate.
-    It is computed from the samples, so it cannot include light that no sample found.
-
-    Attributes
-    ----------
-    estimate, low, high : float
-        The estimate, and the ends of its interval; NaN if there are too few samples.
-    trusted : bool
-        True if many samples support the estimate. False if a few samples carry more than half of the
-        estimate, so that one more or fewer would change it; or if the ends of the interval differ by more
-        than a factor of thirty. Bright samples that all neighboring pixels confirm, as on the rim of a lamp,
-        are not such rare samples.
-
-    See Also
-    --------
-    Image.interval : The errors of single pixels.
-    render : Takes a limit on the error.
-
-    Examples
-    --------
-    >>> scene = rw.Scene(rw.Sphere(), environment=1.0)
-    >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=8, height=8)
-    >>> error = rw.render(scene, camera, samples=64, progress=False).error
-    >>> error.low <= float(error) <= error.high, error.trusted
-    (True, True)
-    """
-
-    estimate: float
-    low: float
-    high: float
-    trusted: bool = True
-
-    def __float__(self) -> float:
-        return self.estimate
-
-    def __format__(self, spec: str) -> str:
-        return format(self.estimate, spec) if spec else str(self)
-
-    def __str__(self) -> str:
-        if math.isnan(self.estimate):
-            return "unknown"
-        doubt = "" if self.trusted else ", not to be trusted yet"
-        return f"{self.estimate:.3g} (95 % interval {self.low:.3g} to {self.high:.3g}{doubt})"
-
-    def _key(self) -> tuple[float | bool | None, ...]:
-        # NaN does not equal itself, but unknown errors compare equal.
-        numbers = (self.estimate, self.low, self.high)
-        return (*(None if math.isnan(x) else x for x in numbers), self.trusted)
-
-    def __eq__(self, other: object) -> bool:
-        return self._key() == other._key() if isinstance(other, ErrorEstimate) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(self._key())
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -473,27 +414,20 @@ class Image:
         if not isinstance(other, Image):
             return NotImplemented
         return (
-            np.array_equal(self.rgb, other.rgb, equal_nan=True)
-            and np.array_equal(self.standard_error, other.standard_error, equal_nan=True)
-            and self.history.shape == other.history.shape
-            and all(
-                np.array_equal(self.history[name], other.history[name], equal_nan=True)
-                for name in HISTORY.names or ()
-            )
+            same(self.rgb, other.rgb)
+            and same(self.standard_error, other.standard_error)
+            and all(same(self.history[name], other.history[name]) for name in HISTORY.names or ())
             and (self.error, self.seconds, self.samples, self.warnings, self.biased)
             == (other.error, other.seconds, other.samples, other.warnings, other.biased)
             and self.plan == other.plan
-            and _same(self.pooled_error, other.pooled_error)
-            and _same(self.degrees, other.degrees)
-            and _same(self.alpha, other.alpha)
-            and _same(self.bias, other.bias)
-            and _same(self.bias_error, other.bias_error)
+            and same(self.pooled_error, other.pooled_error)
+            and same(self.degrees, other.degrees)
+            and same(self.alpha, other.alpha)
+            and same(self.bias, other.bias)
+            and same(self.bias_error, other.bias_error)
             and self.halves == other.halves
             and self.aov.keys() == other.aov.keys()
-            and all(
-                np.array_equal(array, other.aov[name], equal_nan=array.dtype.kind == "f")
-                for name, array in self.aov.items()
-            )
+            and all(same(array, other.aov[name]) for name, array in self.aov.items())
         )
 
     __hash__ = None  # type: ignore[assignment]
@@ -529,12 +463,6 @@ class Image:
             f"relMSE {self.error}",
         ]
         return f"Image({', '.join([*parts, *self.warnings])})"
-
-
-def _same(one: NDArray[np.float32] | None, other: NDArray[np.float32] | None) -> bool:
-    if one is None or other is None:
-        return one is other
-    return np.array_equal(one, other, equal_nan=True)
 
 
 def _thinned(samples: NDArray[np.int64], rows: int) -> list[int]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..arrays import sealed
 from .image import Image
 
 
@@ -122,13 +123,13 @@ class ImageSoFar(Image):
         if self.is_whole:
             return self._whole.rgb
         pixels = self._sight.rgb
-        return self._whole.rgb if pixels is None else _sealed(pixels)
+        return self._whole.rgb if pixels is None else sealed(pixels)
 
     @cached_property
     def aov(self) -> Mapping[str, NDArray[Any]]:
         """Samples of each pixel, if they may differ."""
         counts = self._sight.counts if self._counted else None
-        return {} if counts is None else {"samples": _sealed(counts)}
+        return {} if counts is None else {"samples": sealed(counts)}
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -154,9 +155,3 @@ class ImageSoFar(Image):
     def degrees(self) -> NDArray[np.float32] | None:
         """Degrees of freedom of that."""
         return self._whole.degrees
-
-
-def _sealed(array: NDArray[Any]) -> NDArray[Any]:
-    """Return a read-only array that is not shared."""
-    array.setflags(write=False)
-    return array

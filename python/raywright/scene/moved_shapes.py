@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..shapes.mesh import moved
+from ..shapes.mesh_changes import moved
 from .instance import AnyShape, Instance
 
 

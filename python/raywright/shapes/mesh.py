@@ -385,7 +385,7 @@ class Mesh:
             normals = (normals.astype(np.float64) @ cofactors.T) * (-1.0 if mirrors else 1.0)
             length = np.linalg.norm(normals, axis=1, keepdims=True)
             normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
-        result = replaced(
+        result = changed(
             self,
             vertices=frozen(self.vertices.astype(np.float64) @ linear.T + shift),
             faces=frozen(self.faces[:, [0, 2, 1]]) if mirrors else self.faces,
@@ -458,25 +458,6 @@ def face_count(shape: object) -> int:
     return len(shape.faces) if isinstance(shape, Mesh) else 0
 
 
-def moved(mesh: object, name: str, vertices: ArrayLike) -> Mesh:
-    """Return the mesh with its vertices elsewhere, and all else as it is, given normals too."""
-    if not isinstance(mesh, Mesh):
-        raise ValueError(f"{name} must be None for shapes other than meshes, got a {type(mesh).__name__}")
-    return replaced(mesh, vertices=rows(name, vertices, 3, len(mesh.vertices)))
-
-
-def replaced(mesh: Mesh, **values: Any) -> Mesh:
-    """Return the mesh with other values of some fields, which are checked already."""
-    return changed(mesh, **values)
-
-
-def wound(mesh: Mesh, faces: ArrayLike, normals: ArrayLike | None) -> Mesh:
-    """Return the mesh with other faces and normals of the same vertices, and all else as it is."""
-    count = len(mesh.vertices)
-    pointing = None if normals is None else rows("normals", normals, 3, count)
-    return changed(mesh, faces=triangles("faces", faces, count), normals=pointing)
-
-
 def rounding(mesh: Mesh) -> float:
     """Return how close corners of a mesh are that differ by rounding."""
     return max(_core.weld_rounding(mesh.vertices, mesh.faces), mesh._noise)
@@ -492,12 +473,6 @@ def stretched(distance: float, linear: NDArray[np.float64]) -> float:
 def noisy(mesh: Mesh, noise: float) -> Mesh:
     """Return the mesh with the distance by which rounding parted its corners before it was transformed."""
     object.__setattr__(mesh, "_noise", noise)
-    return mesh
-
-
-def continued(mesh: Mesh) -> Mesh:
-    """Return the mesh, marked as a part of the same object as the mesh before it."""
-    object.__setattr__(mesh, "_continues", True)
     return mesh
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from .. import _core
 from ..arrays import number
-from .mesh import Mesh, moved, rounding
+from .mesh import Mesh, rounding
+from .mesh_changes import moved
 
 Weld: TypeAlias = float | Literal["auto"] | None
 _Shape = TypeVar("_Shape")

@@ -21,7 +21,8 @@ from ..io import shown
 from ..io.tone import DEFAULT
 from ..locks import Lock
 from ..query.trees import TreeBoxes
-from ..rendering.image import ErrorEstimate, Image
+from ..rendering.error_estimate import ErrorEstimate
+from ..rendering.image import Image
 from ..rendering.partial_image import ImageSoFar
 from ..rendering.render import render
 from ..scene.scene import Scene

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+import inspect
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import integer, number, real_array, triple
+from .tensors import array_of
+
+
+def pinhole_rays(*args: Any, **kwargs: Any) -> NDArray[np.float32]:
+    """Return the rays of a camera given in one of Open3D's two forms."""
+    is_view = len(args) + len(kwargs) == 6 or "fov_deg" in kwargs
+    form: Callable[..., NDArray[np.float32]] = rays_of_view if is_view else rays_of_matrices
+    names = (*inspect.signature(form).parameters, *args)
+    plain = [array_of(name, value) for name, value in zip(names, args, strict=False)]
+    return form(*plain, **{name: array_of(name, value) for name, value in kwargs.items()})
 
 
 def rays_of_matrices(

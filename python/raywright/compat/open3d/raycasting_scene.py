@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import inspect
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import integer, last_axis
+from ...arrays import integer
 from ...query.rays import point_arguments
 from ...scene.scene import Scene
 from ...shapes.mesh import Mesh
-from .pinhole import rays_of_matrices, rays_of_view
-from .tensors import array_of, is_tensor, tensor_of
+from .arguments import ends_of, parts_of, points_of, threads_of
+from .pinhole import pinhole_rays
+from .tensors import array_of, ids, is_tensor, single, tensor_of
 
 _INVALID = 2**32 - 1
 
@@ -111,7 +111,7 @@ class RaycastingScene:
         if faces is None:
             if (vertices is None) == (mesh is None):
                 raise TypeError("add_triangles takes vertex_positions and triangle_indices, or a mesh")
-            vertices, faces = _parts(vertices if mesh is None else mesh)
+            vertices, faces = parts_of(vertices if mesh is None else mesh)
         made = Mesh(array_of("vertex_positions", vertices), array_of("triangle_indices", faces))
         self._has_tensors |= is_tensor(vertices) or is_tensor(faces)
         self._meshes.append(made)
@@ -155,13 +155,13 @@ class RaycastingScene:
         >>> hits["t_hit"].tolist(), hits["primitive_ids"].tolist()
         ([5.0, inf], [0, 4294967295])
         """
-        hits = self._compiled.intersect(*_ends(rays), threads=_threads(nthreads))
+        hits = self._compiled.intersect(*ends_of(rays), threads=threads_of(nthreads))
         answer = {
-            "t_hit": _single(hits.t),
-            "geometry_ids": _ids(hits.shape_id),
-            "primitive_ids": _ids(hits.primitive_id),
-            "primitive_uvs": _single(hits.uv),
-            "primitive_normals": _single(np.where(hits.hit[..., np.newaxis], hits.normal, 0)),
+            "t_hit": single(hits.t),
+            "geometry_ids": ids(hits.shape_id),
+            "primitive_ids": ids(hits.primitive_id),
+            "primitive_uvs": single(hits.uv),
+            "primitive_normals": single(np.where(hits.hit[..., np.newaxis], hits.normal, 0)),
         }
         return self._all_told(answer, rays)
 
@@ -196,7 +196,7 @@ class RaycastingScene:
         [True, False]
         """
         ends = float(tnear), float(tfar)
-        return self._told(self._compiled.occluded(*_ends(rays), *ends, threads=_threads(nthreads)), rays)
+        return self._told(self._compiled.occluded(*ends_of(rays), *ends, threads=threads_of(nthreads)), rays)
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
         """Count how often each ray crosses the meshes: (...) int32.
@@ -228,7 +228,7 @@ class RaycastingScene:
         >>> scene.count_intersections([[0.1, 0.2, 5, 0, 0, -1]]).tolist()
         [2]
         """
-        count = self._compiled.count_hits(*_ends(rays), threads=_threads(nthreads))
+        count = self._compiled.count_hits(*ends_of(rays), threads=threads_of(nthreads))
         return self._told(count.astype(np.int32), rays)
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
@@ -265,14 +265,14 @@ class RaycastingScene:
         >>> hits["t_hit"].tolist(), hits["ray_splits"].tolist()
         ([4.0, 6.0], [0, 2])
         """
-        hits = self._compiled.intersect_all(*_ends(rays), threads=_threads(nthreads))
+        hits = self._compiled.intersect_all(*ends_of(rays), threads=threads_of(nthreads))
         answer = {
             "ray_splits": hits.ray_splits.astype(np.uint32),
             "ray_ids": hits.ray.astype(np.uint32),
-            "t_hit": _single(hits.t),
-            "geometry_ids": _ids(hits.shape_id),
-            "primitive_ids": _ids(hits.primitive_id),
-            "primitive_uvs": _single(hits.uv),
+            "t_hit": single(hits.t),
+            "geometry_ids": ids(hits.shape_id),
+            "primitive_ids": ids(hits.primitive_id),
+            "primitive_uvs": single(hits.uv),
         }
         return self._all_told(answer, rays)
 
@@ -312,14 +312,14 @@ class RaycastingScene:
         >>> scene.compute_closest_points([[1, 1, 3]])["points"].tolist()
         [[1.0, 1.0, 0.0]]
         """
-        found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
+        found = self._compiled.closest_point(points_of(query_points), threads=threads_of(nthreads))
         has = found.found[..., np.newaxis]
         answer = {
-            "points": _single(np.where(has, found.position, 0)),
-            "geometry_ids": _ids(found.shape_id),
-            "primitive_ids": _ids(found.primitive_id),
-            "primitive_uvs": _single(np.where(has, found.uv, 0)),
-            "primitive_normals": _single(np.where(has, found.normal, 0)),
+            "points": single(np.where(has, found.position, 0)),
+            "geometry_ids": ids(found.shape_id),
+            "primitive_ids": ids(found.primitive_id),
+            "primitive_uvs": single(np.where(has, found.uv, 0)),
+            "primitive_normals": single(np.where(has, found.normal, 0)),
         }
         return self._all_told(answer, query_points)
 
@@ -351,8 +351,8 @@ class RaycastingScene:
         >>> scene.compute_distance([[1, 1, 3]]).tolist()
         [3.0]
         """
-        found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
-        return self._told(_single(found.distance), query_points)
+        found = self._compiled.closest_point(points_of(query_points), threads=threads_of(nthreads))
+        return self._told(single(found.distance), query_points)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Compute the signed distance of each point from the meshes, negative inside: (...) float32.
@@ -387,9 +387,9 @@ class RaycastingScene:
         [-1.0, 2.0]
         """
         inside = self._inside(query_points, nthreads, nsamples)
-        found = self._compiled.closest_point(_points(query_points), threads=_threads(nthreads))
+        found = self._compiled.closest_point(points_of(query_points), threads=threads_of(nthreads))
         signed = np.where(inside & (found.distance > 0), -found.distance, found.distance)
-        return self._told(_single(signed), query_points)
+        return self._told(single(signed), query_points)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Find whether each point is inside the meshes: (...) float32, 1 inside and 0 outside.
@@ -431,7 +431,7 @@ class RaycastingScene:
         >>> scene.compute_occupancy([[0, 0, 0], [0, 0, 3]]).tolist()
         [1.0, 0.0]
         """
-        return self._told(_single(self._inside(query_points, nthreads, nsamples)), query_points)
+        return self._told(single(self._inside(query_points, nthreads, nsamples)), query_points)
 
     @classmethod
     def create_rays_pinhole(cls, *args: Any, **kwargs: Any) -> Any:
@@ -473,10 +473,7 @@ class RaycastingScene:
         (2, 4, 6)
         """
         given = (*args, *kwargs.values())
-        form = rays_of_view if len(given) == 6 or "fov_deg" in kwargs else rays_of_matrices
-        names = (*inspect.signature(form).parameters, *args)
-        plain = [array_of(name, value) for name, value in zip(names, args, strict=False)]
-        rays = form(*plain, **{name: array_of(name, value) for name, value in kwargs.items()})
+        rays = pinhole_rays(*args, **kwargs)
         return tensor_of(rays) if cls._returns_tensors or any(map(is_tensor, given)) else rays
 
     @property
@@ -490,7 +487,7 @@ class RaycastingScene:
         if integer("nsamples", nsamples, 1) % 2 == 0:
             raise ValueError(f"nsamples must be odd, got {nsamples}")
         core = self._compiled._compiled()
-        arguments = point_arguments(_points(query_points), _threads(nthreads))
+        arguments = point_arguments(points_of(query_points), threads_of(nthreads))
         return core.contains(*arguments, is_even_odd=True)
 
     def _all_told(self, answer: dict[str, Any], given: Any) -> dict[str, Any]:
@@ -506,36 +503,3 @@ class RaycastingScene:
     def __repr__(self) -> str:
         faces = sum(len(mesh.faces) for mesh in self._meshes)
         return f"RaycastingScene({len(self._meshes)} meshes, {faces} triangles)"
-
-
-def _parts(mesh: Any) -> tuple[Any, Any]:
-    """Return the vertices and triangles of a mesh."""
-    if hasattr(mesh, "vertex") and hasattr(mesh, "triangle"):
-        return mesh.vertex["positions"], mesh.triangle["indices"]
-    faces = getattr(mesh, "triangles", None) if not hasattr(mesh, "faces") else mesh.faces
-    if not hasattr(mesh, "vertices") or faces is None:
-        raise TypeError(f"mesh must have vertices and triangles, got {type(mesh).__name__}")
-    return mesh.vertices, faces
-
-
-def _ends(rays: Any) -> tuple[NDArray[Any], NDArray[Any]]:
-    array = last_axis("rays", array_of("rays", rays), 6)
-    return array[..., :3], array[..., 3:]
-
-
-def _points(query_points: Any) -> NDArray[Any]:
-    return last_axis("query_points", array_of("query_points", query_points), 3)
-
-
-def _threads(nthreads: int) -> int | None:
-    return integer("nthreads", nthreads, 0) or None
-
-
-def _single(array: NDArray[Any]) -> NDArray[np.float32]:
-    with np.errstate(over="ignore"):
-        return array.astype(np.float32)
-
-
-def _ids(numbers: NDArray[np.int32]) -> NDArray[np.uint32]:
-    # -1 becomes INVALID_ID.
-    return numbers.astype(np.uint32)

@@ -35,3 +35,15 @@ def tensor_of(array: NDArray[Any]) -> Any:
     """Return an array as a tensor of Open3D, which shares its memory where it can be written to."""
     core: Any = sys.modules["open3d"].core
     return core.Tensor.from_numpy(np.require(array, requirements=["C", "W"]))
+
+
+def single(array: NDArray[Any]) -> NDArray[np.float32]:
+    """Return numbers as float32; those that do not fit become infinite."""
+    with np.errstate(over="ignore"):
+        return array.astype(np.float32)
+
+
+def ids(numbers: NDArray[np.int32]) -> NDArray[np.uint32]:
+    """Return indices as uint32."""
+    # -1 becomes INVALID_ID.
+    return numbers.astype(np.uint32)

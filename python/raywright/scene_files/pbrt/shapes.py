@@ -17,7 +17,8 @@ from ...lights import Emission
 from ...materials import Mask, Material
 from ...mesh_files.meshes import load_whole
 from ...shapes import Cylinder, Disk, Shape, Sphere
-from ...shapes.mesh import Mesh, wound
+from ...shapes.mesh import Mesh
+from ...shapes.mesh_changes import wound
 from ..tubes import b_spline
 from .lights import imaged
 from .parameters import Floats, Parameters
