@@ -428,11 +428,9 @@ class Scene(BuiltOnce):
         ...     print(error)
         device must be a Gpu, got 'a device'
         """
-        hold = getattr(device, "hold", None)
-        if isinstance(device, type) or hold is None:
+        if isinstance(device, type) or not hasattr(device, "upload"):
             raise TypeError(f"device must be a Gpu, got {device!r}")
-        held: AbstractContextManager[Held] = hold(self)
-        return held
+        return device.upload(self)
 
     def _parts(self) -> tuple[Any, ...]:
         """Return the arguments of the scene, in their order."""

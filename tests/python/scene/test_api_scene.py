@@ -1,9 +1,11 @@
 """Scenes: what they take, keep and compile."""
 
 import copy
+import inspect
 import pickle
 import sys
 import warnings
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -278,3 +280,17 @@ def test_copy_replace_makes_one_too(box):
 def test_a_wrong_change_is_told(box, changes, error, message):
     with pytest.raises(error, match=message):
         rw.Scene(box).replace(**changes)
+
+
+def test_a_device_takes_the_scene_by_the_method_that_gpus_have():
+    class Device:
+        def upload(self, scene):
+            return nullcontext((self, scene))
+
+    assert inspect.isfunction(rw.Gpu.upload)
+    scene, device = rw.Scene([]), Device()
+    with scene.on_device(device) as held:
+        assert held == (device, scene)
+    for wrong in (3, Device, rw.Gpu):
+        with pytest.raises(TypeError, match="device must be a Gpu, got "):
+            scene.on_device(wrong)
