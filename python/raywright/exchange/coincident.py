@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..io.quiet import warn_caller
 from ..scene.instance import AnyShape
 from ..shapes import Shape
 from ..shapes.mesh import Mesh
@@ -112,7 +112,7 @@ class Covered:
 NOTHING = Covered.of({}, np.zeros(0))
 
 
-def merged(laid: LaidOut, both: bool = False, stacklevel: int = 3) -> tuple[LaidOut, Covered]:
+def merged(laid: LaidOut, both: bool = False) -> tuple[LaidOut, Covered]:
     """Return a scene in which each place has one face that exchanges light, and the faces that do not.
 
     A face all of whose area lies in faces before it, which look the same way, is shrunk to a point. If both
@@ -141,19 +141,15 @@ def merged(laid: LaidOut, both: bool = False, stacklevel: int = 3) -> tuple[Laid
             partly.add(face)
     partly |= {other for one, other in shapes_too.tolist() if one not in parts and other not in parts}
     if partly:
-        warnings.warn(
+        warn_caller(
             f"{len(partly)} of {len(own)} faces partly overlap coplanar faces, "
-            f"{_named(laid, min(partly))} first: their exchange there counts twice",
-            RuntimeWarning,
-            stacklevel=stacklevel,
+            f"{_named(laid, min(partly))} first: their exchange there counts twice"
         )
     if parts:
         first = min(parts)
-        warnings.warn(
+        warn_caller(
             f"{len(parts)} of {len(own)} faces coincide with others and are counted once with them: "
-            f"{_named(laid, first)} first, with {_named(laid, parts[first][0][0])}",
-            RuntimeWarning,
-            stacklevel=stacklevel,
+            f"{_named(laid, first)} first, with {_named(laid, parts[first][0][0])}"
         )
     sheets = ~same & ~touch
     turned = _backs(pairs[sheets], areas[sheets], own, set(parts)) if both else {}

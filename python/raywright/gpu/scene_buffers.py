@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from types import TracebackType
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._core import FlatScene
+from ..io.quiet import warn_caller
 from ..locks import Lock
 from ..query.gpu_arrays import flat_arrays
 from ..query.hits import Hits
@@ -182,11 +182,7 @@ class GpuScene:
                     told[before[0] : before[1]] = self._kernels.read(before[2])
             except Exception as lost:
                 self._kernels = None
-                warnings.warn(
-                    f"{self._name} was lost, and the CPU takes over: {str(lost).strip()}",
-                    RuntimeWarning,
-                    stacklevel=3,
-                )
+                warn_caller(f"{self._name} was lost, and the CPU takes over: {str(lost).strip()}")
                 break
             before = (start, stop, work)
         return told
