@@ -1,4 +1,14 @@
-"""Ray tracing for Python: exact hits from numpy arrays, and pictures that say how wrong they still are."""
+"""Ray tracing for Python: exact hits from numpy arrays, and pictures with an estimate of their error.
+
+`Scene` takes meshes, files and curved shapes, and traces rays: `Scene.intersect`, `Scene.occluded`,
+`Scene.contains`, `Scene.closest_point`. `measure` has measurements by rays, such as sky view and thickness;
+`view_factors`, `radiosity` and `radiative_exchange` compute diffuse exchange. `load` reads scene files, and
+`render` makes pictures of a scene with a `Camera`.
+
+>>> import raywright as rw
+>>> rw.Scene(rw.Sphere()).intersect([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]).t.item()
+2.0
+"""
 
 from __future__ import annotations
 

@@ -56,14 +56,16 @@ def _info(options: argparse.Namespace) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = Parser(prog="raywright", description="Trace rays and render pictures that tell their error.")
+    parser = Parser(
+        prog="raywright", description="Render pictures with error estimates, and measure meshes with rays."
+    )
     parser.add_argument(
-        "--version", action="version", version=f"raywright {VERSION}", help="tell the version and exit"
+        "--version", action="version", version=f"raywright {VERSION}", help="print the version and exit"
     )
     verbs = parser.add_subparsers(title="verbs", dest="verb", metavar="VERB", required=True)
     pictures.add(verbs)
 
-    info = verbs.add_parser("info", help="tell what a file holds, and what its accelerator looks like")
+    info = verbs.add_parser("info", help="print the contents of a file and statistics of its accelerator")
     info.set_defaults(run=_info)
     info.add_argument("scene", metavar="SCENE", help=pictures.SCENES)
 

@@ -39,13 +39,13 @@ def add(verbs: Any) -> None:
     sky.set_defaults(run=_sky)
     _add_sites(sky)
     sky.add_argument(
-        "--up", choices=tuple(_UP), help="the zenith, below whose horizon is no sky (default: none)"
+        "--up", choices=tuple(_UP), help="zenith; there is no sky below its horizon (default: none)"
     )
     _add_rays(sky)
 
     thickness = verbs.add_parser(
         "thickness",
-        help="how thick a body is below its faces, vertices or points",
+        help="thickness of a body at faces, vertices or points",
         epilog="example: raywright thickness part.stl --method sphere -o part.ply",
     )
     thickness.set_defaults(run=_thickness)
@@ -54,14 +54,14 @@ def add(verbs: Any) -> None:
         "--method",
         choices=("ray", "sphere"),
         default="ray",
-        help="straight in, or the largest ball inside (default: %(default)s)",
+        help="along the inward normal, or by the largest ball inside (default: %(default)s)",
     )
     _add_threads(thickness)
 
     visibility = verbs.add_parser(
         "visibility",
-        help="how open it is around faces, vertices or points, or which of them a place sees",
-        description="Without --from: 1 less ambient occlusion. With it: 1 for what is seen from there, or 0.",
+        help="ambient visibility of faces, vertices or points, or visibility from one point",
+        description="Without --from: 1 minus ambient occlusion. With --from: 1 if visible, otherwise 0.",
         epilog="example: raywright visibility statue.ply --at vertices --radius 0.5 -o statue_ao.ply",
     )
     visibility.set_defaults(run=_visibility)
@@ -70,10 +70,10 @@ def add(verbs: Any) -> None:
         "--radius",
         metavar="R",
         type=number(float),
-        help="how far what stands in the way counts (default: all)",
+        help="maximum distance of occluders (default: none)",
     )
     visibility.add_argument(
-        "--from", dest="viewer", nargs=3, metavar=("X", "Y", "Z"), type=finite, help="a place to see from"
+        "--from", dest="viewer", nargs=3, metavar=("X", "Y", "Z"), type=finite, help="point to see from"
     )
     _add_rays(visibility)
     _add_lidar(verbs)
@@ -83,30 +83,38 @@ def _add_lidar(verbs: Any) -> None:
     told = " (default: %(default)s)"
     verb = verbs.add_parser(
         "lidar",
-        help="what a laser scanner measures: a cloud of points",
+        help="point cloud of a simulated laser scanner",
         epilog="example: raywright lidar street.obj --position 0 1.8 0 --beams 32 --noise 0.02 -o scan.ply",
     )
     verb.set_defaults(run=_lidar)
     _add_mesh(verb)
     three = {"nargs": 3, "metavar": ("X", "Y", "Z"), "type": finite}
-    verb.add_argument("--position", **three, default=(0.0, 0.0, 0.0), help="of the scanner (default: 0 0 0)")
-    verb.add_argument("--forward", **three, help="its azimuth 0 (default: 1 0 0)", default=(1.0, 0.0, 0.0))
-    verb.add_argument("--up", choices=tuple(_UP), default="y", help="axis about which it turns" + told)
+    verb.add_argument(
+        "--position", **three, default=(0.0, 0.0, 0.0), help="position of the scanner (default: 0 0 0)"
+    )
+    verb.add_argument(
+        "--forward", **three, help="direction of azimuth 0 (default: 1 0 0)", default=(1.0, 0.0, 0.0)
+    )
+    verb.add_argument("--up", choices=tuple(_UP), default="y", help="axis of rotation" + told)
     whole = number(int, 1, 10**6)
-    verb.add_argument("--beams", metavar="N", type=whole, default=16, help="beams above each other" + told)
-    verb.add_argument("--columns", metavar="N", type=whole, default=1800, help="times a turn" + told)
+    verb.add_argument(
+        "--beams", metavar="N", type=whole, default=16, help="number of beams, one above the other" + told
+    )
+    verb.add_argument(
+        "--columns", metavar="N", type=whole, default=1800, help="number of columns of a turn" + told
+    )
     verb.add_argument(
         "--elevations",
         nargs=2,
         metavar=("LOW", "HIGH"),
         type=finite,
         default=(-15.0, 15.0),
-        help="of the lowest and the highest beam, in degrees (default: -15 15)",
+        help="elevation of the lowest and the highest beam, in degrees (default: -15 15)",
     )
     verb.add_argument(
-        "--min-range", metavar="R", type=number(float, 0), default=0.0, help="least range" + told
+        "--min-range", metavar="R", type=number(float, 0), default=0.0, help="minimum range" + told
     )
-    verb.add_argument("--max-range", metavar="R", type=number(float), help="largest range (default: none)")
+    verb.add_argument("--max-range", metavar="R", type=number(float), help="maximum range (default: none)")
     verb.add_argument(
         "--divergence",
         metavar="D",
@@ -118,7 +126,7 @@ def _add_lidar(verbs: Any) -> None:
         "--returns",
         choices=("all", "first", "last", "strongest"),
         default="all",
-        help="which of a beam are kept" + told,
+        help="returns of a beam to keep" + told,
     )
     verb.add_argument(
         "--noise", metavar="S", type=number(float, 0), default=0.0, help="standard deviation of ranges" + told
@@ -147,25 +155,28 @@ def _add_sites(verb: argparse.ArgumentParser) -> None:
     _add_mesh(verb)
     where = verb.add_mutually_exclusive_group()
     where.add_argument(
-        "--at", choices=("faces", "vertices"), default="faces", help="of the mesh (default: %(default)s)"
+        "--at",
+        choices=("faces", "vertices"),
+        default="faces",
+        help="centers of faces, or vertices (default: %(default)s)",
     )
     where.add_argument(
         "--points",
         metavar="FILE",
-        help="points instead: .csv with columns x, y, z and perhaps nx, ny, nz, or .npy of (N, 3) or (N, 6)",
+        help="file of points: .csv with columns x, y, z, optionally nx, ny, nz; or .npy, (N, 3) or (N, 6)",
     )
     verb.add_argument(
         "--normal",
         nargs=3,
         metavar=("X", "Y", "Z"),
         type=finite,
-        help="of all points (default: those of the file, or of the nearest faces)",
+        help="normal of all points (default: from the file, or from the nearest faces)",
     )
     verb.add_argument(
         "--offset",
         metavar="D",
         type=number(float, 0),
-        help="how far from vertices and points rays start (default: off the surface by its rounding)",
+        help="distance of ray origins from the points (default: just beyond rounding)",
     )
 
 
@@ -175,7 +186,7 @@ def _add_rays(verb: argparse.ArgumentParser) -> None:
         metavar="N",
         type=number(int, 16, 2**24),
         default=_RAYS,
-        help="directions a point (default: %(default)s)",
+        help="rays from each point (default: %(default)s)",
     )
     _add_seed(verb)
     _add_threads(verb)

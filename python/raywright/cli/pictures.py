@@ -31,7 +31,7 @@ def add(verbs: Any) -> None:
     demo.set_defaults(run=_demo)
     _add_picture(demo, "cornell.png", f"{DEMO_SECONDS:g} seconds", width=512, height=512)
 
-    one = verbs.add_parser("render", help="render a scene, or a mesh file, which is framed and lit")
+    one = verbs.add_parser("render", help="render a scene file, or a mesh file framed and lit")
     one.set_defaults(run=_render)
     add_scene(one)
     _add_picture(one, None, "64 samples, or as many as the scene's own file says")
@@ -107,7 +107,7 @@ def _add_view(verb: argparse.ArgumentParser) -> None:
         metavar="N",
         type=number(int, 0, 65535),
         default=0,
-        help="where on 127.0.0.1 to serve the page (default: any that is free)",
+        help="port of the page on 127.0.0.1 (default: any free port)",
     )
     verb.add_argument("--open", action="store_true", help="open a browser")
     _add_tone(verb)
@@ -118,7 +118,7 @@ def add_scene(verb: argparse.ArgumentParser) -> None:
     """Add the argument of a scene."""
     verb.add_argument("scene", metavar="SCENE", help=f"{SCENES}; or {CORNELL!r}")
     verb.add_argument(
-        "--up", choices=("y", "z"), help="axis that points up in a mesh file, not in a scene (default: y)"
+        "--up", choices=("y", "z"), help="up axis of a mesh file; scene files have their own (default: y)"
     )
     verb.set_defaults(refuse=verb.error)
 
@@ -144,14 +144,16 @@ def _add_picture(
         "--background",
         choices=BACKGROUNDS,
         default=BACKGROUNDS[0],
-        help="whether the camera sees it, or the picture has an alpha instead" + told,
+        help="show the environment, or make the background transparent" + told,
     )
     _add_limits(verb, limit, width, height)
     verb.add_argument(
-        "--checkpoint", metavar="FILE", help="keep the render in a file, and go on from it if it is there"
+        "--checkpoint",
+        metavar="FILE",
+        help="save the state of the render in FILE, and continue from it if it exists",
     )
     verb.add_argument(
-        "--denoise", action="store_true", help="take the noise out in the end: biased, with its error"
+        "--denoise", action="store_true", help="denoise the finished picture (biased, with an error estimate)"
     )
     verb.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
@@ -164,10 +166,10 @@ def _add_tone(verb: argparse.ArgumentParser) -> None:
         metavar="E",
         type=stops,
         default=0.0,
-        help="stops by which pictures for the eye are made brighter" + told,
+        help="exposure of 8-bit pictures, in stops" + told,
     )
     verb.add_argument(
-        "--tone", choices=TONES, default=DEFAULT, help="how what is brighter than white is shown" + told
+        "--tone", choices=TONES, default=DEFAULT, help="tone mapping of values brighter than white" + told
     )
 
 
@@ -191,11 +193,9 @@ def _add_limits(
     verb.add_argument(
         "--seed", metavar="N", type=number(int, 0, 2**64 - 1), help="seed (default: the scene's own, or 0)"
     )
+    verb.add_argument("--adaptive", action="store_true", help="take more samples for pixels with more error")
     verb.add_argument(
-        "--adaptive", action="store_true", help="more samples where more of the estimated error is"
-    )
-    verb.add_argument(
-        "--clamp", metavar="L", type=number(float), help="radiance to dim brighter samples to: biased"
+        "--clamp", metavar="L", type=number(float), help="maximum radiance of a sample (biased)"
     )
 
 

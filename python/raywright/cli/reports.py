@@ -14,10 +14,12 @@ from .pictures import add_scene, shot_of
 
 def add(verbs: Any) -> None:
     """Add the verb to a parser."""
-    report = verbs.add_parser("report", help="compare what the library has for the same task")
+    report = verbs.add_parser("report", help="compare accelerators, or integrator settings")
     reports = report.add_subparsers(title="reports", dest="report", metavar="REPORT", required=True)
     _add_accelerators(
-        reports.add_parser("accelerators", help="every accelerator on the same rays: costs, and if all agree")
+        reports.add_parser(
+            "accelerators", help="every accelerator on the same rays: cost, and agreement of hits"
+        )
     )
     _add_convergence(
         reports.add_parser("convergence", help="error against run time, with and without adaptive sampling")
@@ -82,18 +84,22 @@ def _add_accelerators(report: argparse.ArgumentParser) -> None:
         "--accelerators",
         metavar="NAMES",
         type=_accelerators,
-        help="which, with commas between: names as the report has them, or kinds such as BVH (default: all)",
+        help="accelerators, separated by commas: names from the report, or kinds such as BVH (default: all)",
     )
     report.add_argument(
         "--rays",
         metavar="N",
         type=number(int, 1, 2**31 - 1),
         default=65536,
-        help="about how many primary rays: as many as make a square" + told,
+        help="approximate number of primary rays, rounded to a square picture" + told,
     )
     report.add_argument("--threads", metavar="N", type=number(int, 1), default=1, help="threads" + told)
     report.add_argument(
-        "--repeats", metavar="N", type=number(int, 1, 10_000), default=5, help="turns of each" + told
+        "--repeats",
+        metavar="N",
+        type=number(int, 1, 10_000),
+        default=5,
+        help="number of timings of each" + told,
     )
     report.add_argument("--seed", metavar="N", type=number(int, 0, 2**64 - 1), default=0, help="seed" + told)
     _add_forms(report)
@@ -108,16 +114,20 @@ def _add_convergence(report: argparse.ArgumentParser) -> None:
         metavar="S",
         type=number(float),
         default=4.0,
-        help="longest run time of one render" + told,
+        help="longest run time of a render, in seconds" + told,
     )
     report.add_argument(
         "--reference",
         metavar="S",
         type=number(float),
-        help="seconds to make a reference in (default: errors are as estimated)",
+        help="time for a reference, in seconds (default: none; errors are estimates)",
     )
     report.add_argument(
-        "--seeds", metavar="N", type=number(int, 1, 10_000), default=3, help="renders of each" + told
+        "--seeds",
+        metavar="N",
+        type=number(int, 1, 10_000),
+        default=3,
+        help="number of renders of each" + told,
     )
     size = number(int, 1, 65536)
     report.add_argument("--width", metavar="W", type=size, default=256, help="pixels" + told)

@@ -1,4 +1,4 @@
-"""Pictures, with how wrong they still are."""
+"""Pictures with their error."""
 
 from __future__ import annotations
 
