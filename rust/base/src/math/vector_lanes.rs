@@ -70,12 +70,16 @@ impl SingleLanes {
     }
 }
 
-/// Gather sixteen entries of a column by increasing index; the last one may repeat. If they are contiguous, as
-/// survivors of a stage usually are, they are copied as vectors.
+/// Gather sixteen entries of a column. If they are contiguous, as survivors of a stage usually are, they are copied as
+/// vectors.
 #[inline(always)]
 pub fn gather<T: Copy>(column: &[T], which: &[u32; LANES], to: &mut [T; LANES]) {
-    let (first, end) = (which[0] as usize, which[LANES - 1] as usize);
-    let are_neighbours = end == first + LANES - 1 && which[LANES - 2] as usize + 1 == end;
+    let start = which[0];
+    let mut differ = 0;
+    for (i, &place) in (0u32..).zip(which) {
+        differ |= place ^ start.wrapping_add(i);
+    }
+    let (first, are_neighbours) = (start as usize, differ == 0);
     match column.get(first..first + LANES) {
         Some(neighbours) if are_neighbours => to.copy_from_slice(neighbours),
         _ => {
@@ -181,3 +185,23 @@ macro_rules! in_lanes {
 }
 
 pub use crate::in_lanes;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_gathered_in_any_order() {
+        let column: Vec<u32> = (0..64).map(|i| 7 * i + 1).collect();
+        let contiguous: [u32; LANES] = std::array::from_fn(|i| 5 + i as u32);
+        let mut swapped = contiguous;
+        swapped.swap(3, 4);
+        let repeated = contiguous.map(|i| i.min(9));
+        let at_the_end: [u32; LANES] = std::array::from_fn(|i| 48 + i as u32);
+        for which in [contiguous, swapped, repeated, at_the_end] {
+            let mut got = [0; LANES];
+            gather(&column, &which, &mut got);
+            assert_eq!(got, which.map(|i| 7 * i + 1));
+        }
+    }
+}
