@@ -3,11 +3,11 @@
 use super::kinds::{self, floor};
 use super::{job, samples_of};
 use crate::wavefront::Wavefront;
-use crate::{CameraSample, Path, Session};
+use crate::{CameraSample, Guide, Path, Session};
 use raywright_base::math::{DVec3, Ray, Vec3};
 use raywright_base::sampling::{Sampler, warp};
 use raywright_base::workers::Cancel;
-use raywright_optics::{AnyBsdf, Coated, Conductor, Dielectric, Diffuse, Mirror, Rgb};
+use raywright_optics::{AnyBsdf, Coated, Conductor, Dielectric, Diffuse, Mirror, Rgb, ThinDielectric};
 use raywright_scene::Sides;
 use raywright_scene::fixtures::{cornell, furnace, rectangle, scene, shape};
 use raywright_scene::materials::BsdfMix;
@@ -151,6 +151,9 @@ fn stages_know_spheres_and_all_ways_of_scattering() {
     assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, rough())]), eye);
     assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Dielectric::new(1.5, 0.4))]), eye);
     assert_same(&room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Coated::new(Rgb::splat(0.5), 1.5, 0.3))]), eye);
+    // Panes pass light straight on.
+    let pane = || rectangle([-1.5, 1.0, -1.5], [0.0, 0.0, 3.0], [3.0, 0.0, 0.0]);
+    assert_same(&room(vec![panel()], vec![of(pane(), ThinDielectric::new(1.5))]), eye);
     // Lamps that are spheres, which f64 draws by other numbers, and of which each is asked at what is glossy.
     let lamps = || vec![lamp_ball(-1.0, 3.0, 0.0, 0.3, 20.0), lamp_ball(1.0, 2.0, -1.0, 0.4, 8.0)];
     let glossy = Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), [0.3; 2]);
@@ -224,5 +227,28 @@ fn points_on_large_triangles_are_as_near_as_on_small_ones() {
             let off = value[1] / expected - 1.0;
             assert!(off.abs() < 8.0 * f64::from(f32::EPSILON), "{size}: {off:e}");
         }
+    }
+}
+
+#[test]
+fn stages_guide_paths_as_f64_does() {
+    let eye = DVec3::new(0.1, 1.7, 1.8);
+    let panel = || shape(rectangle([-0.2, 3.9, -0.2], [0.4, 0.0, 0.0], [0.0, 0.0, 0.4]), [0.1; 3], 60.0);
+    let pane = || rectangle([-1.5, 1.0, -1.5], [0.0, 0.0, 3.0], [3.0, 0.0, 0.0]);
+    let glass = room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Dielectric::new(1.5, 0.0))]);
+    let pane = room(vec![panel()], vec![of(pane(), ThinDielectric::new(1.5))]);
+    for scene in [&glass, &pane] {
+        let path = Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, caustics: true, ..Path::default() };
+        assert!(Wavefront::takes(&job(scene)) && path.is_guided(scene));
+        let guide = Guide::of(scene, &Cancel::default());
+        assert!(guide.is_some());
+        let count = 20_000;
+        let session = Wavefront::new(job(scene), path.max_depth, path.roulette_depth, false, guide);
+        let stages = found(&session, eye, count);
+        let wanted = found(&*path.begin_in_general(job(scene), &Cancel::default()), eye, count);
+        let largest = wanted.iter().map(|value| value.max()).fold(0.0, f64::max);
+        let off = |got: Rgb, wanted: Rgb| (got[1] - wanted[1]).abs() > 1e-3 * (wanted[1] + 0.01 * largest);
+        let differ = stages.iter().zip(&wanted).filter(|&(&got, &wanted)| off(got, wanted)).count();
+        assert!(differ <= count as usize / 200, "{differ} of {count} differ");
     }
 }

@@ -74,7 +74,7 @@ impl<'a> WavefrontWorker<'a> {
     ) -> Self {
         let (scene, level) = (job.scene, Level::current().unwrap_or(Level::Scalar));
         let needs = scene.plan().needs();
-        let are_flat = scene.plan().is_constant() && !needs.smooth && !needs.instances;
+        let are_flat = scene.plan().is_constant() && !(needs.smooth || needs.instances || needs.points.width);
         let scatters = needs.scattering || guide.is_some() || !are_flat;
         let normal = scene.lights().ask_for_normals();
         let hits = needs.instances || needs.motion;
@@ -297,7 +297,7 @@ impl<'a> WavefrontWorker<'a> {
                         let own = self.block.sample.map(|sample| sample.min(sample.wrapping_sub(samples_here)));
                         timed(Part::Numbers, || columns.gather(&own, &mut numbers));
                     }
-                    if kind == Plan::DIFFUSE && !self.extra.aimed {
+                    if kind == Plan::DIFFUSE && !(self.extra.aimed || self.extra.width) {
                         self.leave_matte(&numbers, bounce, samples_here);
                     } else {
                         self.leave_any(&numbers, bounce, samples_here);
