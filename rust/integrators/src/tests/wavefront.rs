@@ -3,7 +3,7 @@
 use super::kinds::{self, floor};
 use super::{job, samples_of};
 use crate::wavefront::Wavefront;
-use crate::{CameraSample, Guide, Path, Session};
+use crate::{CameraSample, Guide, Integrator, Path, Session};
 use raywright_base::math::{DVec3, Ray, Vec3};
 use raywright_base::sampling::{Sampler, warp};
 use raywright_base::workers::Cancel;
@@ -250,5 +250,48 @@ fn stages_guide_paths_as_f64_does() {
         let off = |got: Rgb, wanted: Rgb| (got[1] - wanted[1]).abs() > 1e-3 * (wanted[1] + 0.01 * largest);
         let differ = stages.iter().zip(&wanted).filter(|&(&got, &wanted)| off(got, wanted)).count();
         assert!(differ <= count as usize / 200, "{differ} of {count} differ");
+    }
+}
+
+#[test]
+fn what_a_sample_finds_depends_on_no_other() {
+    // Kinds of surfaces that sort paths, one that transmits under a sky, and lamps of both forms.
+    let eye = DVec3::new(0.1, 1.7, 1.8);
+    let panel = shape(rectangle([-0.5, 3.9, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.1; 3], 10.0);
+    let rough = Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), [0.2; 2]);
+    let inside = || {
+        vec![
+            ball(0.8, 1.0, 0.2, 0.5, rough),
+            ball(-0.6, 0.6, 0.3, 0.4, Dielectric::new(1.5, 0.0)),
+            ball(-0.2, 2.0, -0.8, 0.4, Dielectric::new(1.4, 0.3)),
+            of(leaning_floor(), Coated::new(Rgb::splat(0.5), 1.5, 0.3)),
+        ]
+    };
+    let lit = room(vec![panel, lamp_ball(-1.0, 3.0, 0.0, 0.3, 20.0)], inside());
+    let sky = Arc::new(ConstantEnvironment { radiance: Rgb::new(0.5, 1.0, 2.0) });
+    let open = scene(SceneDescription { shapes: inside(), lights: vec![sky] });
+    for scene in [&lit, &open] {
+        let job = job(scene);
+        assert!(Wavefront::takes(&job));
+        let path = Path { caustics: true, ..Path::default() };
+        let session = path.begin(job, &Cancel::default());
+        let samples: Vec<_> = (0..5000)
+            .map(|number| {
+                let mut sampler = Sampler::new(3, 7, number);
+                CameraSample { ray: Ray::new(eye, warp::uniform_sphere(sampler.two(0))), sampler }
+            })
+            .collect();
+        let in_parts = |part: usize| {
+            let mut values = vec![Rgb::ZERO; samples.len()];
+            let mut worker = session.worker();
+            for (samples, values) in samples.chunks(part).zip(values.chunks_mut(part)) {
+                worker.radiance(&mut samples.to_vec(), &Cancel::default(), values);
+            }
+            values
+        };
+        let whole = in_parts(samples.len());
+        for part in [7, 100, 4097] {
+            assert!(in_parts(part) == whole, "{part} at a time");
+        }
     }
 }

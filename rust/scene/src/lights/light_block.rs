@@ -151,14 +151,14 @@ impl Lights {
             choices.sample_lanes(level, &receivers, choice, &mut chosen);
             return self.draw_chosen(level, geometry, (surfaces, normal), &chosen, u, lights);
         }
-        let is_free = || (0..LANES).any(|lane| normal.get(lane) == Vec3::ZERO);
-        if let Some(radiance) = self.constant_sky().filter(|_| !is_free()) {
+        let sky = self.constant_sky();
+        if let Some(radiance) = sky {
             let LightBlock { direction, weight, pdf, t_max, primitive } = lights;
             draw_sky(level, radiance.as_vec3(), normal, u, direction, weight, pdf);
             (*t_max, *primitive) = ([f64::INFINITY; LANES], [Ray::NO_TRIANGLE; LANES]);
-            return;
         }
-        for lane in 0..surfaces.count {
+        // The sky above a surface is drawn already.
+        for lane in (0..surfaces.count).filter(|&lane| sky.is_none() || normal.get(lane) == Vec3::ZERO) {
             let (receiver, u) = (receiver(surfaces, normal, lane), [u[0][lane].into(), u[1][lane].into()]);
             lights.set(lane, &receiver, self.sample(geometry, &receiver, choice[lane], u));
         }
