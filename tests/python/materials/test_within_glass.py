@@ -189,7 +189,7 @@ SCALED = {
 def test_only_the_ratio_of_indices_counts(kind, integrator):
     # In a black room full of a medium, all is as in air with every index divided by that of the medium, and
     # with thicknesses of films multiplied by it: equal random numbers make the same picture.
-    # Some stages are in float32, where one sample in thousands passes an edge on its other side; none of these does.
+    # Some stages are in float32, where a sample may pass an edge on its other side; none of these does.
     sampler = rw.rendering.Independent() if isinstance(integrator, rw.Path) else None
     how = {"samples": 16, "seed": 3, "sampler": sampler, "progress": False}
 
