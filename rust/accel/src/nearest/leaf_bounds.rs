@@ -92,7 +92,10 @@ impl LeafBounds {
     /// Use a point of some triangle, rounded to f64, as an upper bound.
     #[inline(always)]
     pub fn toward(&mut self, search: &Search, position: DVec3) {
-        let distance = (position - search.point).length();
+        let way = position - search.point;
+        // Squares of tiny coordinates vanish.
+        let largest = way.abs().max_element().max(f64::MIN_POSITIVE);
+        let distance = (way / largest).length() * largest;
         if distance.is_finite() {
             self.shorten(distance * (1.0 + Self::STEP) * self.scale + self.slack);
         }
