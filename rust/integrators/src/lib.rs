@@ -32,6 +32,7 @@ mod transport;
 mod volumes;
 mod wavefront;
 mod whitted;
+mod widths;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use aov::{Channel, aovs};

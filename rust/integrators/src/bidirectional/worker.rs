@@ -10,7 +10,7 @@ use crate::nesting::MediumStack;
 use crate::roulette;
 use crate::shadows::Shadows;
 use crate::skip_intersections::{Met, Passing};
-use crate::transport::widened;
+use crate::widths::widened;
 use crate::{CameraSample, Job, Worker, is_matt};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::sampling::Sampler;

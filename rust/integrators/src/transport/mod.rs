@@ -32,7 +32,6 @@ use raywright_optics::Rgb;
 use raywright_scene::Scene;
 use std::sync::Arc;
 pub(super) use weights::power_heuristic;
-pub(super) use widths::widened;
 use worker::TransportWorker;
 
 /// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the

@@ -15,7 +15,7 @@ use crate::dimensions::Dimensions;
 use crate::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
 use crate::nesting::MediumStack;
 use crate::terminate_wavelengths::Parting;
-use crate::transport::widened;
+use crate::widths::widened;
 use crate::{CameraSample, Job, Worker, roulette};
 use raywright_base::math::{DVec3, Ray};
 use raywright_base::workers::Cancel;

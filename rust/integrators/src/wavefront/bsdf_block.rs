@@ -4,7 +4,7 @@ use super::guided::GuidedBlock;
 use super::queues::Flags;
 use super::shading_frames::ShadingFrames;
 use crate::Guide;
-use crate::transport::widened;
+use crate::widths::widened;
 use raywright_base::math::single::mask;
 use raywright_base::math::{DVec3, Hit, LANES, PathRays, SingleLanes, Vec3, VectorLanes, select};
 use raywright_base::sampling::Pairs;

@@ -86,7 +86,7 @@ impl WavefrontWorker<'_> {
             brings.set(lane, arriving.get(lane).as_vec3());
             lit |= u32::from(!arriving.get(lane).is_black()) << lane;
         }
-        self.shadows.push_block(level, lit, &origin, &brings, &self.block);
+        self.block.queue_shadows(level, lit, (&origin, &brings), &mut self.shadows);
     }
 
     /// Stage: sixteen paths go on from surfaces of any kind, unless roulette ends them.

@@ -10,6 +10,7 @@ mod emission;
 mod groups;
 mod guided;
 mod matte;
+mod matte_stages;
 mod queues;
 mod shading_frames;
 mod worker;

@@ -1,6 +1,5 @@
 //! Paths and shadow rays that wait for their next stage.
 
-use super::worker::Block;
 use raywright_base::math::{LANES, PathRays, SingleLanes, VectorLanes};
 use raywright_base::simd::{Column, Level, pack};
 
@@ -204,28 +203,5 @@ impl ShadowQueue {
             pack(level, mask, &[Column::new(shadows.time, &mut self.rays.time[at..])]);
         }
         self.rays.len += mask.count_ones() as usize;
-    }
-
-    /// Appends shadow rays from the lanes in a mask to the lights drawn there, and what they bring.
-    #[inline]
-    pub fn push_block(
-        &mut self,
-        level: Level,
-        mask: u32,
-        origin: &VectorLanes,
-        arriving: &SingleLanes,
-        block: &Block<'_>,
-    ) {
-        let misses = std::array::from_fn(|lane| [block.surfaces.primitive[lane], block.lights.primitive[lane]]);
-        let shadows = ShadowLanes {
-            origin,
-            direction: &block.lights.direction,
-            t_max: &block.lights.t_max,
-            misses: &misses,
-            arriving,
-            sample: &block.sample,
-            time: &block.time,
-        };
-        self.push(level, mask, &shadows);
     }
 }

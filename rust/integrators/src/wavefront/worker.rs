@@ -3,11 +3,11 @@
 use super::bsdf_block::{BsdfBlock, Scattered};
 use super::emission;
 use super::matte::Reflectances;
-use super::queues::{Extra, PathQueue, ShadowQueue};
+use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue};
 use crate::path_sharing::PathSharing;
 use crate::{CameraSample, CameraSamples, Guide, Job, Worker, roulette};
 use raywright_accel::Primitives;
-use raywright_base::math::{Hit, LANES, Ray, SingleLanes, gather};
+use raywright_base::math::{Hit, LANES, Ray, SingleLanes, VectorLanes, gather};
 use raywright_base::sampling::SamplerColumns;
 use raywright_base::simd::Level;
 use raywright_base::timing::{Part, count, timed};
@@ -63,6 +63,30 @@ pub(super) struct Block<'a> {
     pub(super) lights: LightBlock,
     pub(super) bsdf: BsdfBlock<'a>,
     pub(super) next: Scattered,
+}
+
+impl Block<'_> {
+    /// Queues shadow rays from the lanes in a mask to the lights drawn there, and what they bring.
+    #[inline]
+    pub(super) fn queue_shadows(
+        &self,
+        level: Level,
+        mask: u32,
+        (origin, arriving): (&VectorLanes, &SingleLanes),
+        shadows: &mut ShadowQueue,
+    ) {
+        let misses = std::array::from_fn(|lane| [self.surfaces.primitive[lane], self.lights.primitive[lane]]);
+        let rays = ShadowLanes {
+            origin,
+            direction: &self.lights.direction,
+            t_max: &self.lights.t_max,
+            misses: &misses,
+            arriving,
+            sample: &self.sample,
+            time: &self.time,
+        };
+        shadows.push(level, mask, &rays);
+    }
 }
 
 impl<'a> WavefrontWorker<'a> {

@@ -10,14 +10,14 @@ use raywright_optics::Rgb;
 #[derive(Debug, Default)]
 pub(super) struct Few {
     /// Lights within the scene that can be sampled.
-    within: Vec<Lamp>,
+    within: Vec<SeparateLight>,
     /// Number of lights, including infinite ones; 0 if there is one, or too many.
     count: u32,
 }
 
 /// A light within the scene.
 #[derive(Clone, Copy, Debug)]
-struct Lamp {
+struct SeparateLight {
     /// Its number, or the numbers of the two triangles of a mesh. One of them is selected, so that a panel takes one
     /// sample.
     numbers: [u32; 2],
@@ -25,7 +25,7 @@ struct Lamp {
     share: f64,
 }
 
-impl Lamp {
+impl SeparateLight {
     fn one(number: u32) -> Self {
         Self { numbers: [number; 2], share: 1.0 }
     }
@@ -77,12 +77,12 @@ impl Few {
             let first = number as u32;
             let shines = |number: usize| strengths[number].power > 0.0;
             if pairs.binary_search(&first).is_ok() && shines(number) && shines(number + 1) {
-                within.push(Lamp::two(first, strengths));
+                within.push(SeparateLight::two(first, strengths));
                 number += 2;
                 continue;
             }
             if shines(number) {
-                within.push(Lamp::one(first));
+                within.push(SeparateLight::one(first));
             }
             number += 1;
         }

@@ -17,7 +17,7 @@ use std::borrow::Cow;
 pub struct BsdfLanes<'a> {
     /// The BSDF of each lane, borrowed if it is constant over its surface, otherwise one of `own`. Both in one type would
     /// move hundreds of bytes for each reference.
-    each: Vec<Held<'a>>,
+    each: Vec<BsdfSource<'a>>,
     own: Vec<BsdfMix>,
     /// Mixture components, as many as any lane has had.
     parts: Vec<WeightedLobe>,
@@ -26,7 +26,7 @@ pub struct BsdfLanes<'a> {
 
 /// Where the BSDF of a lane is.
 #[derive(Clone, Copy, Debug)]
-enum Held<'a> {
+enum BsdfSource<'a> {
     Elsewhere(&'a BsdfMix),
     Here(usize),
 }
@@ -110,10 +110,10 @@ impl<'a> BsdfLanes<'a> {
     #[inline]
     pub fn push(&mut self, bsdf: Cow<'a, BsdfMix>) {
         let held = match bsdf {
-            Cow::Borrowed(bsdf) => Held::Elsewhere(bsdf),
+            Cow::Borrowed(bsdf) => BsdfSource::Elsewhere(bsdf),
             Cow::Owned(bsdf) => {
                 self.own.push(bsdf);
-                Held::Here(self.own.len() - 1)
+                BsdfSource::Here(self.own.len() - 1)
             }
         };
         self.each.push(held);
@@ -126,10 +126,10 @@ impl<'a> BsdfLanes<'a> {
     }
 
     #[inline]
-    fn held<'b>(&'b self, held: Held<'b>) -> &'b BsdfMix {
+    fn held<'b>(&'b self, held: BsdfSource<'b>) -> &'b BsdfMix {
         match held {
-            Held::Elsewhere(bsdf) => bsdf,
-            Held::Here(number) => &self.own[number],
+            BsdfSource::Elsewhere(bsdf) => bsdf,
+            BsdfSource::Here(number) => &self.own[number],
         }
     }
 
@@ -142,8 +142,8 @@ impl<'a> BsdfLanes<'a> {
             make_room(&mut self.parts, 1);
         }
         let bsdf = match self.each[lane] {
-            Held::Elsewhere(bsdf) => bsdf,
-            Held::Here(number) => &self.own[number],
+            BsdfSource::Elsewhere(bsdf) => bsdf,
+            BsdfSource::Here(number) => &self.own[number],
         };
         match bsdf {
             BsdfMix::One(bsdf) => {
