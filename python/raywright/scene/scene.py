@@ -389,7 +389,7 @@ class Scene(BuiltOnce):
         >>> scene = rw.Scene(rw.Sphere(material=rw.Mirror()), environment=1.0)
         >>> plan = scene.plan()
         >>> plan.kernel
-        'open'
+        'wavefront'
         >>> plan.needed[:2]
         ('light', 'materials')
         """

@@ -35,7 +35,7 @@ CALLED = {
     "Primitives::corners",
     # Once per batch, or once per full stack.
     "Stacks::new", "Stacks::spare", "Stacks::put_away", "Gate::new", "few_leaves::leaves",
-    "coherence::is_coherent", "Boxes::new", "nearest::by_place",
+    "coherence::is_coherent", "ConeBoxTest::new", "nearest::by_place",
     # Shapes other than triangles, rare queries, their answers.
     "Contents::meet_objects", "RareQuery::initial_state", "RareQuery::offer_hit", "RareQuery::write_answer",
     "Few::ask", "Touches::push", "QueryVisitor::finish",
