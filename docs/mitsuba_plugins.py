@@ -49,7 +49,8 @@ NEARLY = {
     "prb_basic": "as `path`",
     "prbvolpath": "as `path`",
     "moment": "the nested integrator; every picture has an error estimate",
-    "direct": "if `emitter_samples` or `bsdf_samples` is 0, the other technique samples all light; with a warning",
+    "direct": "if `emitter_samples` or `bsdf_samples` is 0, the other technique samples all light; "
+    "with a warning",
     "gridvolume": "one or three channels; all grids of a medium in the same place",
     "depth": '`aov="depth"`',
 }
