@@ -1,10 +1,10 @@
 //! First hits of a camera by rasterisation: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer
 //! display of curved surfaces", 1974). Every pixel's decision equals that of its ray.
 //!
-//! Each triangle is projected once, to a rectangle of pixels that contains all rays that can hit it (`pixel_bounds.rs`).
-//! The picture is cut into tiles, and the triangles of a tile are processed nearest first. A conservative test rejects
-//! pixels that an edge certainly misses, or that are certainly hidden by an earlier hit. For the others the exact
-//! ray-triangle test ([`EdgeRay`]) decides the hit and its `t`, so hits equal those of
+//! Each triangle is projected once, to a rectangle of pixels that contains all rays that can hit it
+//! (`pixel_bounds.rs`). The picture is cut into tiles, and the triangles of a tile are processed nearest first. A
+//! conservative test rejects pixels that an edge certainly misses, or that are certainly hidden by an earlier hit. For
+//! the others the exact ray-triangle test ([`EdgeRay`]) decides the hit and its `t`, so hits equal those of
 //! [`Scene::intersect`](super::Scene::intersect) bit for bit.
 //!
 //! A tile falls back to the BVH if its triangles are so many or so large that rasterising them takes longer. The whole

@@ -58,8 +58,8 @@ impl Sphere {
         }
     }
 
-    /// Where a ray hits the sphere first, in f64. A ray that leaves the sphere starts off it by more than a rounding, so
-    /// that it hits the other side or nothing.
+    /// Where a ray hits the sphere first, in f64. A ray that leaves the sphere starts off it by more than a rounding.
+    /// So it hits the other side or nothing.
     pub fn meet(&self, ray: &Ray) -> Option<f64> {
         let (center, radius) = self.exact;
         let (from, d) = (ray.origin - center, ray.direction);

@@ -17,8 +17,8 @@ impl WavefrontWorker<'_> {
         }
     }
 
-    /// A path comes to its first or second point, which reflects so much about a shading normal; that may have been bent
-    /// towards its ray.
+    /// A path comes to its first or second point, which reflects so much about a shading normal; that may have been
+    /// bent towards its ray.
     pub(super) fn visit_lane(
         &mut self,
         lane: usize,

@@ -270,8 +270,8 @@ impl<'a> WavefrontWorker<'a> {
         emission::add_emitted(self.scene, (queue, &self.hits), &block.surfaces, &block.bsdf.width, radiance);
     }
 
-    /// Whether roulette is played after so many bounces. The density with which a path comes to the second point that it
-    /// shares must be known.
+    /// Whether roulette is played after so many bounces. The density with which a path comes to the second point that
+    /// it shares must be known.
     pub(super) fn plays(&self, bounce: u32) -> bool {
         bounce + 1 >= self.roulette_depth && (bounce > 0 || self.sharing.is_none())
     }

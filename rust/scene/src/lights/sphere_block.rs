@@ -8,7 +8,7 @@ use std::f32::consts::TAU;
 
 loops! {
     /// Draws light of spheres from points outside them, uniformly in the cone that each subtends ([`raywright_shapes`]
-    /// has the formulas in f64). `outside` is all bits where a point is outside; what is drawn elsewhere has no meaning.
+    /// has the formulas in f64). `outside` is all bits where a point is outside; other lanes are undefined.
     pub(super) fn draw_spheres(
         position: &VectorLanes,
         lamps: &LampLanes,

@@ -15,8 +15,8 @@ use std::borrow::Cow;
 /// another the second ones, and so on.
 #[derive(Clone, Debug, Default)]
 pub struct BsdfLanes<'a> {
-    /// The BSDF of each lane, borrowed if it is constant over its surface, otherwise one of `own`. Both in one type would
-    /// move hundreds of bytes for each reference.
+    /// The BSDF of each lane, borrowed if it is constant over its surface, otherwise one of `own`. A type for both
+    /// would move hundreds of bytes for each reference.
     each: Vec<BsdfSource<'a>>,
     own: Vec<BsdfMix>,
     /// Mixture components, as many as any lane has had.
