@@ -73,7 +73,7 @@ pub enum Builder {
         /// The search radius in Morton order, from 1 to [`ploc::MAX_RADIUS`].
         radius: usize,
     },
-    /// Splits without a cost model: [`halves`].
+    /// Splits without a cost model: [`split_rules`].
     Halves(SplitRule),
 }
 
