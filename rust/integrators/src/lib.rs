@@ -4,6 +4,7 @@ mod ambient_occlusion;
 mod aov;
 mod beam_traced;
 mod bidirectional;
+mod boundary_queries;
 mod camera_samples;
 mod cone_traced;
 mod dimensions;

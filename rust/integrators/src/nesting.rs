@@ -1,5 +1,6 @@
 //! Nested dielectrics: the media at a point of a path.
 
+use super::boundary_queries::BoundaryQueries;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Dispersive;
 use raywright_scene::materials::Interior;
@@ -177,18 +178,15 @@ pub fn indices_outside(scene: &Scene, rays: &[Ray], hits: &[Hit]) -> Vec<f64> {
     let whole: Vec<Ray> = met.iter().map(|&i| Ray { t_max: f64::INFINITY, ..rays[i] }).collect();
     let mut media = Vec::new();
     MediumStack::<Interior>::at(scene, &whole, &mut media);
-    let windows: Vec<_> = met.iter().map(|&i| around::<Interior>(scene, &rays[i], &hits[i])).collect();
-    let crossings = scene.crossings(&windows.iter().flatten().copied().collect::<Vec<_>>());
-    let mut next = 0;
-    for ((&i, media), window) in met.iter().zip(&media).zip(&windows) {
-        if window.is_none() {
-            found[i] = media.ior_around(scene, &hits[i]);
-            continue;
+    let (rays, hits): (Vec<Ray>, Vec<Hit>) = met.iter().map(|&i| (rays[i], hits[i])).unzip();
+    let mut boundaries = BoundaryQueries::default();
+    boundaries.find::<Interior>(scene, rays.iter().copied(), &hits);
+    for (number, (&i, media)) in met.iter().zip(&media).enumerate() {
+        match boundaries.boundary(scene, number, (&rays[number], &hits[number]), media) {
+            None => found[i] = media.ior_around(scene, &hits[number]),
+            Some((Boundary::Between { outside, .. }, _)) => found[i] = outside,
+            Some((Boundary::None(_), _)) => {}
         }
-        if let Boundary::Between { outside, .. } = Boundary::new(scene, &rays[i], media, crossings.of_ray(next)) {
-            found[i] = outside;
-        }
-        next += 1;
     }
     found
 }
@@ -218,13 +216,40 @@ pub(super) enum Boundary<F = Interior> {
     },
 }
 
-/// Return the ray span around a hit that [`Boundary::new`] needs: surfaces that coincide, or differ by less than
-/// rounding, are one boundary. Return `None` for open surfaces.
-pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Option<Ray> {
-    F::of(scene, hit)?;
+/// What may be around a hit: surfaces that coincide, or differ by less than rounding, are one boundary.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Around {
+    /// The hit surface is open.
+    Open,
+    /// Nothing else. The ray goes on from this `t`.
+    Nothing(f64),
+    /// What this span of the ray hits.
+    Window(Ray),
+}
+
+impl Around {
+    /// Return the `t` from which a ray goes on behind its hit.
+    pub fn beyond(&self, hit: &Hit) -> f64 {
+        match self {
+            Self::Open => hit.t.next_up(),
+            Self::Nothing(beyond) => *beyond,
+            Self::Window(window) => window.t_max.next_up(),
+        }
+    }
+}
+
+/// Return what may be around a hit.
+pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Around {
+    if F::of(scene, hit).is_none() {
+        return Around::Open;
+    }
     let surface = scene.geometry().surface(ray, hit);
     let reach = RayOrigin::reach(&surface, ray);
-    Some(Ray { t_min: ray.t_min.max(hit.t - reach), t_max: (hit.t + reach).next_up(), ..*ray })
+    let t_max = (hit.t + reach).next_up();
+    if scene.plan().lone_shapes().has(ray, hit, &surface, reach) {
+        return Around::Nothing(t_max.next_up());
+    }
+    Around::Window(Ray { t_min: ray.t_min.max(hit.t - reach), t_max, ..*ray })
 }
 
 impl<F: Filling> Boundary<F> {

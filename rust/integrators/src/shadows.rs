@@ -1,6 +1,7 @@
 //! Shadow rays.
 
-use super::nesting::{Boundary, MediumStack, around};
+use super::boundary_queries::BoundaryQueries;
+use super::nesting::{Boundary, MediumStack};
 use raywright_base::math::{Hit, Ray, RayLanes, RayQueue};
 use raywright_optics::Rgb;
 use raywright_scene::materials::Interior;
@@ -15,9 +16,7 @@ pub(super) struct Shadows {
     media: Vec<MediumStack>,
     occluded: Vec<bool>,
     hits: Vec<Hit>,
-    /// Ray spans around hits on medium boundaries, and the indices of their rays.
-    windows: Vec<Ray>,
-    of: Vec<usize>,
+    boundaries: BoundaryQueries,
 }
 
 impl Shadows {
@@ -80,36 +79,24 @@ impl Shadows {
             self.hits.clear();
             self.hits.resize(rays.len(), Hit::MISS);
             scene.intersect(&rays, &mut self.hits);
-            self.windows.clear();
-            self.of.clear();
             if nested {
-                for (i, (ray, hit)) in rays.iter().zip(&self.hits).enumerate() {
-                    if hit.is_hit()
-                        && let Some(window) = around::<Interior>(scene, ray, hit)
-                    {
-                        self.windows.push(window);
-                        self.of.push(i);
-                    }
-                }
+                self.boundaries.find::<Interior>(scene, rays.iter().copied(), &self.hits);
             }
-            let crossings = scene.crossings(&self.windows);
-            let mut window = 0;
             let mut kept = 0;
             for i in 0..rays.len() {
                 let (ray, hit, which) = (&rays[i], &self.hits[i], on_way[i]);
                 if !hit.is_hit() {
                     continue;
                 }
-                if self.of.get(window) == Some(&i) {
-                    window += 1;
-                    let hits = crossings.of_ray(window - 1);
-                    if let Boundary::None(media) = Boundary::new(scene, ray, &self.media[which], hits) {
-                        self.rays.set_t_min(which, self.windows[window - 1].t_max.next_up());
-                        self.media[which] = media;
-                        on_way[kept] = which;
-                        kept += 1;
-                        continue;
-                    }
+                if nested
+                    && let Some((Boundary::None(media), beyond)) =
+                        self.boundaries.boundary(scene, i, (ray, hit), &self.media[which])
+                {
+                    self.rays.set_t_min(which, beyond);
+                    self.media[which] = media;
+                    on_way[kept] = which;
+                    kept += 1;
+                    continue;
                 }
                 let opacity = opacity(scene, ray, hit);
                 self.arriving[which].1 *= 1.0 - opacity;

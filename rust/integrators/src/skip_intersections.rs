@@ -1,8 +1,8 @@
 //! Skipped intersections: alpha masks and nested dielectrics.
 
-use super::nesting::{Boundary, MediumStack, around};
+use super::boundary_queries::BoundaryQueries;
+use super::nesting::{Boundary, MediumStack};
 use super::shadows::opacity;
-use raywright_accel::Crossings;
 use raywright_base::math::{Hit, Ray, RayQueue};
 use raywright_scene::Scene;
 use raywright_scene::materials::Interior;
@@ -12,12 +12,7 @@ use raywright_scene::materials::Interior;
 pub(super) struct Passing {
     masks: bool,
     nested: bool,
-    /// Ray spans around hits on medium boundaries, and the indices of their rays.
-    windows: Vec<Ray>,
-    of: Vec<u32>,
-    crossings: Crossings,
-    /// First span not yet processed.
-    next: usize,
+    boundaries: BoundaryQueries,
 }
 
 /// The result of an intersection.
@@ -57,25 +52,14 @@ impl Passing {
         if !self.nested {
             return;
         }
-        self.windows.clear();
-        self.of.clear();
-        for (i, hit) in (0u32..).zip(hits) {
-            if hit.is_hit()
-                && let Some(window) = around::<Interior>(scene, &rays.get(i as usize), hit)
-            {
-                self.windows.push(window);
-                self.of.push(i);
-            }
-        }
-        self.crossings = scene.crossings(&self.windows);
-        self.next = 0;
+        self.boundaries.find::<Interior>(scene, (0..hits.len()).map(|i| rays.get(i)), hits);
     }
 
-    /// Process the hit of ray number `i`; calls must be in the order of the rays. `media` are the ray's media. `chance`
+    /// Process the hit of ray number `i`. `media` are the ray's media. `chance`
     /// is a uniform number that decides masks. It is negative until first needed, when `number` draws it. After each
     /// decision its remainder is rescaled to be uniform again.
     pub fn meet(
-        &mut self,
+        &self,
         scene: &Scene,
         i: usize,
         (ray, hit): (&Ray, &Hit),
@@ -84,19 +68,15 @@ impl Passing {
         number: impl FnOnce() -> f64,
     ) -> Met {
         let (mut hit, mut outside, mut through) = (*hit, media.ior_around(scene, hit), *media);
-        if self.of.get(self.next) == Some(&(i as u32)) {
-            let window = self.next;
-            self.next += 1;
-            match Boundary::new(scene, ray, media, self.crossings.of_ray(window)) {
-                Boundary::None(media) => {
-                    return Met::Nothing(Ray { t_min: self.windows[window].t_max.next_up(), ..*ray }, media);
+        let boundary = if self.nested { self.boundaries.boundary(scene, i, (ray, &hit), media) } else { None };
+        match boundary {
+            None => {}
+            Some((Boundary::None(media), beyond)) => return Met::Nothing(Ray { t_min: beyond, ..*ray }, media),
+            Some((Boundary::Between { hit: owner, outside: ior, through: beyond }, _)) => {
+                if owner.primitive != hit.primitive || owner.inner != hit.inner {
+                    hit = owner;
                 }
-                Boundary::Between { hit: owner, outside: ior, through: beyond } => {
-                    if owner.primitive != hit.primitive || owner.inner != hit.inner {
-                        hit = owner;
-                    }
-                    (outside, through) = (ior, beyond);
-                }
+                (outside, through) = (ior, beyond);
             }
         }
         if self.masks {

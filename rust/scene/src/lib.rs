@@ -13,6 +13,7 @@ mod interaction;
 pub mod fixtures;
 mod geometry;
 pub mod lights;
+mod lone_shapes;
 mod lookup_context;
 pub mod materials;
 pub mod media;
@@ -49,6 +50,7 @@ pub use lights::{
     Emitters, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext,
     Lights, Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };
+pub use lone_shapes::LoneShapes;
 pub use lookup_context::LookupContext;
 pub use materials::{DiffuseMaterial, Material};
 pub use opacity::opacity_at;

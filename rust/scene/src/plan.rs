@@ -4,7 +4,7 @@ use super::materials::BsdfMix;
 use super::media::Medium;
 use super::nested_shapes::Standing;
 use super::textures::Needs;
-use super::{Emission, Geometry, Lights, Material, Rounding};
+use super::{Emission, Geometry, Lights, LoneShapes, Material, Rounding};
 use raywright_accel::Primitives;
 use raywright_optics::{AnyBsdf, Bsdf, Rgb};
 use std::borrow::Cow;
@@ -96,6 +96,8 @@ pub struct Plan {
     diffuse: Vec<Option<[Rgb; 2]>>,
     /// BSDF kinds of each shape, front and back.
     kinds: Vec<[u8; 2]>,
+    /// Closed shapes that nothing else is near.
+    lone: LoneShapes,
     /// True if shading normals are used as given.
     as_given: bool,
 }
@@ -146,13 +148,18 @@ impl Plan {
             needs.standing = Standing::of(geometry, materials.iter().map(|material| &**material));
             needs.nested |= needs.standing.sheets;
         }
+        let encloses = |shape: u32| {
+            let material = &materials[shape as usize];
+            material.interior().is_some() || material.boundary().is_some()
+        };
+        let lone = LoneShapes::of(geometry, encloses);
         let few = if needs.scattering { lights.few() } else { 0 };
         let colour = |sides: &Option<[BsdfMix; 2]>| {
             let [front, back] = sides.as_ref()?;
             Some([front.diffuse()?, back.diffuse()?])
         };
         let diffuse = constants.iter().map(colour).collect();
-        Self { needs, rounding, few, constants, diffuse, kinds, as_given: false }
+        Self { needs, rounding, few, constants, diffuse, kinds, lone, as_given: false }
     }
 
     fn of(material: &dyn Material, emission: &Emission) -> SceneNeeds {
@@ -222,6 +229,12 @@ impl Plan {
     #[inline]
     pub fn normals_as_given(&self) -> bool {
         self.as_given
+    }
+
+    /// The closed shapes that nothing else is near.
+    #[inline]
+    pub fn lone_shapes(&self) -> &LoneShapes {
+        &self.lone
     }
 
     /// The features the scene needs.

@@ -2,7 +2,7 @@
 
 use super::current_medium::Filled;
 use super::ray_tracer::{ImmediateQueries, TraceRays, at_once};
-use crate::nesting::{Boundary, Filling, MediumStack, around};
+use crate::nesting::{Around, Boundary, Filling, MediumStack, around};
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Scene, SurfaceInteraction};
 
@@ -31,12 +31,16 @@ pub(super) async fn come_to(
     hit: &Hit,
     media: &MediumStack<Filled>,
 ) -> ClassifiedHit {
-    let Some(window) = around::<Filled>(scene, ray, hit) else {
-        let outside = media.ior_around(scene, hit);
-        return ClassifiedHit::Surface { hit: *hit, outside, through: *media, beyond: hit.t.next_up() };
-    };
-    let beyond = window.t_max.next_up();
-    asks.crossed(&window, |crossed| meet_at(scene, ray, (hit, beyond), media, crossed)).await
+    let around = around::<Filled>(scene, ray, hit);
+    let at = (hit, around.beyond(hit));
+    match around {
+        Around::Open => {
+            let outside = media.ior_around(scene, hit);
+            ClassifiedHit::Surface { hit: *hit, outside, through: *media, beyond: at.1 }
+        }
+        Around::Nothing(_) => meet_at(scene, ray, at, media, std::slice::from_ref(hit)),
+        Around::Window(window) => asks.crossed(&window, |crossed| meet_at(scene, ray, at, media, crossed)).await,
+    }
 }
 
 /// Classify a hit as [`come_to`] does, for a single ray.
