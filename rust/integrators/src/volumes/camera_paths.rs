@@ -274,6 +274,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
     ) -> bool {
         let ray = path.ray;
         let (scene, geometry) = (self.scene, self.scene.geometry());
+        path.leaves = hit.primitive;
         let surface = geometry.surface(&ray, &hit);
         let emission = scene.emission_at(&surface);
         // Shared contributions are also used by paths of other widths.
@@ -425,7 +426,8 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         }
         path.scale *= next.eta * next.eta;
         path.bounce = path.bounce.saturating_add(1);
-        path.ray = Ray { time: path.ray.time, ..ray };
+        let leaves = std::mem::replace(&mut path.leaves, Ray::NO_TRIANGLE);
+        path.ray = Ray { time: path.ray.time, misses: [leaves, Ray::NO_TRIANGLE], ..ray };
         let throughput = path.weights.throughput();
         if throughput.max() * path.scale < self.settings.least {
             return false;

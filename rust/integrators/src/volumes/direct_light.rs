@@ -58,7 +58,7 @@ impl<A: TraceRays> Walker<'_, A> {
             Some(source) => from.segment(source),
             None => from.ray(light.direction),
         };
-        let ray = Ray { time: path.ray.time, misses: [Ray::NO_TRIANGLE, light.primitive], ..ray };
+        let ray = Ray { time: path.ray.time, misses: [path.leaves, light.primitive], ..ray };
         // Sampling a direction never hits a point light or a directional light.
         let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };

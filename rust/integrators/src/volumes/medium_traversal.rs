@@ -133,10 +133,12 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
             match come_to((self.scene, self.asks), &path.ray, &hit, &path.media).await {
                 ClassifiedHit::Passed(beyond, media) => {
                     (path.ray.t_min, path.media, path.passed) = (beyond, media, path.passed.saturating_add(1));
+                    path.ray.misses[0] = hit.primitive;
                 }
                 ClassifiedHit::Surface { hit, outside, through, beyond } => {
                     let opacity = opacity(self.scene, &path.ray, &hit);
                     let straight = straight(self.scene, &path.ray, &hit, outside);
+                    path.ray.misses[0] = hit.primitive;
                     if opacity < 1.0 && numbers.next() >= opacity {
                         path.ray.t_min = hit.t.next_up();
                     } else if straight > 0.0 && numbers.next() < straight {
@@ -191,7 +193,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
             if weights.carried.is_black() {
                 return;
             }
-            start = end;
+            (start, ray.misses[0]) = (end, hit.primitive);
             match met {
                 None => return,
                 Some(ClassifiedHit::Passed(beyond, now)) => (ray.t_min, media) = (beyond, now),

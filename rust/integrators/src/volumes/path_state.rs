@@ -17,6 +17,8 @@ pub(super) struct PathState {
     pub weights: Weights,
     /// Media at the ray's origin.
     pub media: MediumStack<Filled>,
+    /// Primitive at the vertex that the path is about to leave; [`Ray::NO_TRIANGLE`] in a medium or on the way.
+    pub leaves: u32,
     /// Normal for light sampling at the last scattering event ([`raywright_scene::LightSampleContext`]).
     pub normal: DVec3,
     /// Sampling density of the ray's direction; infinite for camera rays.
@@ -56,6 +58,7 @@ impl PathState {
             ray,
             weights: Weights::START,
             media,
+            leaves: Ray::NO_TRIANGLE,
             normal: DVec3::ZERO,
             pdf: f64::INFINITY,
             scale: 1.0,
