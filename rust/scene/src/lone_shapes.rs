@@ -21,6 +21,8 @@ struct Gap {
     /// of the shape; 0 if unknown.
     length: f64,
     has_edges: bool,
+    /// Nothing is inside.
+    is_empty: bool,
 }
 
 /// Shapes of more triangles are not compared with each other, and of more boxes with one around all of them.
@@ -66,10 +68,18 @@ impl LoneShapes {
         let gap = |(shape, solid): (usize, &Option<Convex>)| {
             let Some(solid) = solid else { return Gap::default() };
             let others = boxes.iter().enumerate().filter(|&(other, _)| other != shape).flat_map(|(_, boxes)| boxes);
-            let length = others.fold(solid.across(), |gap, other| gap.min(solid.gap(*other)));
-            Gap { length, has_edges: matches!(solid, Convex::Planes(..)) }
+            let (length, is_empty) = others.fold((solid.across(), true), |(length, is_empty), other| {
+                let [outside, inside] = solid.gaps(*other);
+                (length.min(outside.max(inside)), is_empty && outside > 0.0)
+            });
+            Gap { length, has_edges: matches!(solid, Convex::Planes(..)), is_empty }
         };
         Self { gaps: solids.iter().enumerate().map(gap).collect() }
+    }
+
+    /// Returns whether a shape is convex, touches nothing and has nothing inside: its inner points see each other.
+    pub fn is_empty(&self, shape: u32) -> bool {
+        self.gaps.get(shape as usize).is_some_and(|gap| gap.is_empty && gap.length > 0.0)
     }
 
     /// Returns whether a ray certainly crosses no other surface within its reach ([`RayOrigin::reach`], in lengths of
@@ -155,11 +165,12 @@ impl Convex {
         }
     }
 
-    /// A lower bound on the distance of what is in a box from the solid's surface; 0 if they may touch.
-    fn gap(&self, [low, high]: Extent) -> f64 {
+    /// Lower bounds on the distance of what is in a box from the solid's surface, if it is outside and if it is inside;
+    /// 0 if it may not be.
+    fn gaps(&self, [low, high]: Extent) -> [f64; 2] {
         let (middle, half) = (low.midpoint(high), 0.5 * (high - low));
         if !(middle.is_finite() && half.is_finite()) {
-            return 0.0;
+            return [0.0; 2];
         }
         match self {
             Self::Planes(planes, _) => {
@@ -169,12 +180,12 @@ impl Convex {
                 };
                 let outside = planes.iter().map(|plane| of_plane(plane).0).fold(0.0, f64::max);
                 let inside = planes.iter().map(|plane| of_plane(plane).1).fold(f64::INFINITY, f64::min);
-                outside.max(inside)
+                [outside, inside.max(0.0)]
             }
             Self::Ball(center, radius) => {
                 let away = (*center - middle).abs();
                 let (nearest, farthest) = ((away - half).max(DVec3::ZERO).length(), (away + half).length());
-                (nearest - radius).max(radius - farthest).max(0.0)
+                [(nearest - radius).max(0.0), (radius - farthest).max(0.0)]
             }
         }
     }
@@ -266,6 +277,18 @@ mod tests {
         assert_eq!(share_alone(vec![ball(DVec3::splat(0.4), 0.5), ball(DVec3::splat(0.4), 0.5)]), 0.0);
         assert_eq!(share_alone(vec![solid(), solid()]), 0.0);
         assert_eq!(share_alone(vec![tetrahedron(CORNERS, 3)]), 0.0);
+    }
+
+    #[test]
+    fn a_shape_is_empty_if_all_others_are_outside() {
+        let is_empty = |other: Shape| {
+            let shapes = vec![tetrahedron(CORNERS, 4), other];
+            let scene = scene(SceneDescription { shapes, ..Default::default() });
+            LoneShapes::of(scene.geometry(), |shape| shape == 0).is_empty(0)
+        };
+        assert!(is_empty(ball(DVec3::new(0.35, 0.3, -0.5), 0.1)));
+        assert!(!is_empty(ball(DVec3::new(0.35, 0.3, 0.25), 0.01)));
+        assert!(!is_empty(ball(DVec3::new(0.35, 0.3, 0.0), 0.01)));
     }
 
     #[test]

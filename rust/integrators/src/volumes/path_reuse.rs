@@ -206,7 +206,7 @@ impl Reuse {
                 giving.push(i);
             }
         }
-        self.look(scene, parts);
+        self.look(scene, of, parts);
         for number in 0..self.giving.len() {
             self.give(number, of, parts, radiance);
         }
@@ -249,11 +249,18 @@ impl Reuse {
         }
     }
 
-    /// Test the visibility of all pairs.
-    fn look(&mut self, scene: &Scene, parts: &[SharedVertices]) {
+    /// Test the visibility of all pairs in the medium of a path.
+    fn look(&mut self, scene: &Scene, of: &FirstVertex, parts: &[SharedVertices]) {
         self.seen.clear();
+        let (primitive, _) = of.among.0;
+        let is_clear = primitive != Filled::NONE.shape().0
+            && scene.plan().lone_shapes().is_empty(scene.geometry().locate(primitive).0);
         for &giver in &self.giving {
             let Some(second) = parts[giver].second else { continue };
+            if is_clear && second.normal.is_none() {
+                self.seen.extend(self.taking.iter().map(|_| 1.0));
+                continue;
+            }
             let firsts = self.taking.iter().filter_map(|&taker| parts[taker].first);
             self.rays.clear();
             let to = |first: &FirstVertex| second.departure.segment(&RayOrigin::free(first.position));
