@@ -1,6 +1,5 @@
 //! Spatial and directional bounds of lights, the nodes of the light tree.
 
-use super::LightSampleContext;
 use raywright_base::math::{DVec3, Frame};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -63,41 +62,6 @@ impl LightBounds {
         }
     }
 
-    /// Estimate of the contribution to a receiver; 0 only if there is none.
-    ///
-    /// All light is placed at the center. The angle to the lights' normals and the receiver's horizon are the most
-    /// favourable within the bounds.
-    #[inline(always)]
-    pub fn importance(&self, receiver: &LightSampleContext) -> f64 {
-        let way = receiver.position - self.centre();
-        let (square, radius) = (way.length_squared(), 0.25 * (self.max - self.min).length_squared());
-        // Sines and cosines are multiplied by the distance, which avoids divisions and keeps the square roots
-        // independent. Both cases are computed and one is selected, because lanes have no branches.
-        let inverse = 1.0 / square;
-        let (sin_ball, cos_ball) = (radius.sqrt(), (square - radius).sqrt());
-        let to_ball = |sin: f64, cos: f64| {
-            let outside = (cos * cos_ball + sin * sin_ball) * inverse;
-            if cos >= cos_ball { 1.0 } else { outside }
-        };
-        let (mut importance, mut is_missed) = (self.intensity * inverse, false);
-        if self.cos_cone > -1.0 {
-            let (cos, distance) = (self.axis.dot(way), square.sqrt());
-            // The angle to the nearest normal, reduced by the angle of the bounding sphere.
-            let (sin, sin_cone) = (across(cos, square), across(self.cos_cone, 1.0));
-            let nearest = to_ball(sin * self.cos_cone - cos * sin_cone, cos * self.cos_cone + sin * sin_cone);
-            let cos = if cos >= self.cos_cone * distance { 1.0 } else { nearest };
-            is_missed = cos < self.cos_reach;
-            importance *= cos;
-        }
-        let cos = -receiver.normal.dot(way);
-        let above = importance * to_ball(across(cos, square), cos).max(0.0);
-        let importance = if receiver.is_free() { importance } else { above };
-        // Within the sphere around the box every direction is possible.
-        let within = if radius > 0.0 { self.intensity / radius } else { 0.0 };
-        let outside = if is_missed { 0.0 } else { importance };
-        if square <= radius { within } else { outside }
-    }
-
     /// Surface area orientation heuristic without constant factors: intensity times area times solid angle of emission
     /// (Conty Estevez and Kulla, 2018, their equation 1). The area is that of the sphere around the box, because
     /// collinear lights have a box without area.
@@ -109,12 +73,6 @@ impl LightBounds {
             + FRAC_PI_2 * (2.0 * reach * sin - (cone - 2.0 * reach).cos() - 2.0 * cone * sin + cos);
         self.intensity * directions * (self.max - self.min).length_squared()
     }
-}
-
-/// The sine of an angle from its cosine, both times a length of this square.
-#[inline(always)]
-fn across(cos: f64, square: f64) -> f64 {
-    (square - cos * cos).max(0.0).sqrt()
 }
 
 /// The smallest cone around two, with a small margin.

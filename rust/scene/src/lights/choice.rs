@@ -3,7 +3,6 @@
 use super::{LightBounds, LightContextLanes, LightSampleContext, LightTree, Sides};
 use raywright_base::math::{DVec3, LANES};
 use raywright_base::sampling::AliasTable;
-use raywright_base::simd::Level;
 use std::f64::consts::PI;
 
 /// Data for the selection of a light.
@@ -28,7 +27,7 @@ pub(super) enum Choice {
 pub(super) const MOST: f64 = 1e290;
 
 /// Minimum number of lights for a tree. With three lamps over a floor it already removes most of the variance of the
-/// selection, at the cost of two importances per level. The two triangles of a single lamp have nearly equal importance
+/// selection, at the cost of one node. The two triangles of a single lamp have nearly equal importance
 /// and need none.
 const MANY: usize = 3;
 
@@ -98,19 +97,12 @@ impl Choice {
     /// Samples a light for each of sixteen receivers.
     pub fn sample_lanes(
         &self,
-        level: Level,
         receivers: &LightContextLanes,
         u: &[f64; LANES],
         chosen: &mut [Option<(usize, f64)>; LANES],
     ) {
-        match self {
-            Self::Power(table) => {
-                for lane in 0..LANES {
-                    let light = table.sample(u[lane]);
-                    chosen[lane] = Some((light, table.probability(light)));
-                }
-            }
-            Self::Tree(tree) => tree.sample_lanes(level, receivers, u, chosen),
+        for lane in 0..LANES {
+            chosen[lane] = self.sample(&receivers.get(lane), u[lane]);
         }
     }
 

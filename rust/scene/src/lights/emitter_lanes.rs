@@ -121,7 +121,7 @@ impl Lights {
             return;
         };
         let mut chosen = [None; LANES];
-        choices.sample_lanes(level, receivers, choice, &mut chosen);
+        choices.sample_lanes(receivers, choice, &mut chosen);
         self.sample_chosen(level, geometry, receivers, &chosen, u, lights);
     }
 

@@ -148,7 +148,7 @@ impl Lights {
             for lane in 0..LANES {
                 receivers.set(lane, &receiver(surfaces, normal, lane));
             }
-            choices.sample_lanes(level, &receivers, choice, &mut chosen);
+            choices.sample_lanes(&receivers, choice, &mut chosen);
             return self.draw_chosen(level, geometry, (surfaces, normal), &chosen, u, lights);
         }
         let sky = self.constant_sky();

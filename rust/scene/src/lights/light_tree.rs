@@ -1,36 +1,52 @@
 //! A light tree: selection among thousands of lights by estimated contribution.
 
-use super::{LightBounds, LightContextLanes, LightSampleContext};
-use raywright_base::math::{DVec3, LANES};
-use raywright_base::simd::{Level, loops};
+use super::wide_bounds::{Importances, WIDTH, WideBounds};
+use super::{LightBounds, LightSampleContext};
+use raywright_base::math::DVec3;
+use raywright_base::simd::Level;
 
-/// A binary tree over lights (Conty Estevez and Kulla, 2018; with densities as in Pharr, Jakob and Humphreys,
-/// "Physically Based Rendering", 4th edition, 2023, 12.6.3). Traversal selects one of two children with a probability
-/// proportional to their importance.
+/// A tree over lights (Conty Estevez and Kulla, 2018; with densities as in Pharr, Jakob and Humphreys, "Physically
+/// Based Rendering", 4th edition, 2023, 12.6.3). Traversal selects one of up to eight children with a probability
+/// proportional to their importance. The tree is built binary, and its nodes are joined.
 #[derive(Debug)]
 pub struct LightTree {
-    /// Depth first: the first child of an inner node follows it.
     nodes: Vec<Node>,
-    /// For each light, its path from the root: bit i is set if the path takes the second child at depth i.
-    trails: Vec<u64>,
+    /// For each light its node and lane, as a number.
+    places: Vec<u32>,
+    /// From the world to the unit of the nodes.
+    scale: f64,
+    level: Level,
 }
 
-#[derive(Clone, Copy, Debug)]
+/// A node with the bounds of its children.
+#[derive(Clone, Debug)]
 struct Node {
+    bounds: WideBounds,
+    /// For each child [`LEAF`] and a light, or the number of its node.
+    links: [u32; WIDTH],
+    /// Its own place: its parent and the lane there.
+    place: u32,
+}
+
+/// A node of the binary tree.
+#[derive(Clone, Copy)]
+struct BinaryNode {
     bounds: LightBounds,
-    /// The second child, or [`Node::LEAF`] and a light.
+    /// The second child, or [`LEAF`] and a light. The first child follows.
     link: u32,
 }
 
-impl Node {
-    const LEAF: u32 = 1 << 31;
-}
+/// Marks the link of a leaf.
+const LEAF: u32 = 1 << 31;
 
-/// The path of a light that is not in the tree.
-const NOWHERE: u64 = u64::MAX;
+/// The place of the root, and of a light that is not in the tree.
+const NOWHERE: u32 = u32::MAX;
 
-/// Down to this depth nodes are split by cost; below it by median, with at most 31 levels. A path has 64 bits.
+/// Down to this depth nodes are split by cost; below it by median, with at most 31 levels.
 const DEEPEST_SPLIT: u32 = 28;
+
+/// More levels than a tree has.
+const LEVELS: usize = 64;
 
 /// Number of bins in the search for a split.
 const SLICES: usize = 12;
@@ -43,19 +59,10 @@ struct Item {
     light: u32,
 }
 
-loops! {
-    /// Importance of a node to each receiver.
-    fn importances(of: &LightBounds, receivers: &LightContextLanes, brings: &mut [f64; LANES]) {
-        for i in 0..LANES {
-            brings[i] = of.importance(&receivers.get(i));
-        }
-    }
-}
-
 impl LightTree {
     /// Builds a tree over all lights with bounds and positive intensity; `None` if there is none.
     pub fn new(lights: &[Option<LightBounds>]) -> Option<Self> {
-        assert!(lights.len() < Node::LEAF as usize, "fewer than 2^31 lights");
+        assert!(lights.len() < LEAF as usize / WIDTH, "fewer than 2^28 lights");
         let all = || (0u32..).zip(lights).filter_map(|(light, bounds)| bounds.map(|bounds| (light, bounds)));
         let greatest = all().map(|(_, bounds)| bounds.intensity).fold(0.0, f64::max);
         // Normalised by the greatest, so that no importance overflows.
@@ -67,123 +74,107 @@ impl LightTree {
         if items.is_empty() {
             return None;
         }
-        let mut tree = Self { nodes: Vec::with_capacity(2 * items.len()), trails: vec![NOWHERE; lights.len()] };
-        tree.build(&mut items, 0, 0);
+        let mut binary = Vec::with_capacity(2 * items.len());
+        let LightBounds { min, max, .. } = build(&mut items, 0, &mut binary);
+        let extent = (0.5 * max - 0.5 * min).max_element();
+        let scale = if extent > f64::MIN_POSITIVE { 1.0 / extent } else { 1.0 };
+        let level = Level::current().unwrap_or(Level::Scalar);
+        let mut tree = Self { nodes: Vec::new(), places: vec![NOWHERE; lights.len()], scale, level };
+        tree.join(&binary, 0, NOWHERE);
         Some(tree)
     }
 
-    /// Builds the node of a path, and returns its bounds.
-    fn build(&mut self, items: &mut [Item], trail: u64, depth: u32) -> LightBounds {
-        let here = self.nodes.len();
-        if let [item] = items {
-            self.nodes.push(Node { bounds: item.bounds, link: Node::LEAF | item.light });
-            self.trails[item.light as usize] = trail;
-            return item.bounds;
+    /// Adds the node of a binary node and those below, and returns its number.
+    fn join(&mut self, binary: &[BinaryNode], root: usize, place: u32) -> u32 {
+        let mut children = vec![root];
+        // The child over which lights differ most is replaced by its own.
+        let is_inner = |&(_, child): &(usize, &usize)| binary[*child].link & LEAF == 0;
+        let cost = |child: usize| binary[child].bounds.cost();
+        while children.len() < WIDTH {
+            let inner = children.iter().enumerate().filter(is_inner);
+            let Some((at, &child)) = inner.max_by(|(_, a), (_, b)| cost(**a).total_cmp(&cost(**b))) else { break };
+            children[at] = child + 1;
+            children.push(binary[child].link as usize);
         }
-        let middle = split(items, depth);
-        self.nodes.push(Node { bounds: items[0].bounds, link: 0 });
-        let (first, second) = items.split_at_mut(middle);
-        let first = self.build(first, trail, depth + 1);
-        self.nodes[here].link = self.nodes.len() as u32;
-        let second = self.build(second, trail | 1 << depth, depth + 1);
-        self.nodes[here].bounds = first.union(&second);
-        self.nodes[here].bounds
+        let here = self.nodes.len() as u32;
+        let bounds = WideBounds::new(children.iter().map(|&child| &binary[child].bounds), self.scale);
+        self.nodes.push(Node { bounds, links: [NOWHERE; WIDTH], place });
+        for (lane, &child) in children.iter().enumerate() {
+            let (link, place) = (binary[child].link, here * WIDTH as u32 + lane as u32);
+            self.nodes[here as usize].links[lane] = if link & LEAF == 0 {
+                self.join(binary, child, place)
+            } else {
+                self.places[(link & !LEAF) as usize] = place;
+                link
+            };
+        }
+        here
+    }
+
+    /// Importance of a node's children to a receiver.
+    #[inline]
+    fn importances(&self, node: usize, receiver: &LightSampleContext) -> Importances {
+        self.nodes[node].bounds.importances(self.level, self.scale, receiver)
     }
 
     /// Selects a light for a receiver by a number in [0, 1); returns it with its probability. `None` if no light
     /// contributes there.
     #[inline]
-    pub fn sample(&self, receiver: &LightSampleContext, u: f64) -> Option<(usize, f64)> {
-        self.walk(u, |node| self.nodes[node].bounds.importance(receiver))
-    }
-
-    /// Selects a light for each of sixteen receivers. The importances of a small tree are computed for all lanes at
-    /// once.
-    pub fn sample_lanes(
-        &self,
-        level: Level,
-        receivers: &LightContextLanes,
-        u: &[f64; LANES],
-        chosen: &mut [Option<(usize, f64)>; LANES],
-    ) {
-        /// Nodes of a tree of eight lights. In a larger tree a path visits only a small share of all nodes.
-        const MOST: usize = 15;
-        if self.nodes.len() > MOST {
-            for lane in 0..LANES {
-                chosen[lane] = self.sample(&receivers.get(lane), u[lane]);
-            }
-            return;
-        }
-        let mut brings = [[0.0; LANES]; MOST];
-        // The root's importance is never used.
-        for (node, brings) in self.nodes.iter().zip(&mut brings).skip(1) {
-            importances(level, &node.bounds, receivers, brings);
-        }
-        for lane in 0..LANES {
-            chosen[lane] = self.walk(u[lane], |node| brings[node][lane]);
-        }
-    }
-
-    /// Descends from the root to a light, by the importance of each node.
-    #[inline(always)]
-    fn walk(&self, mut u: f64, importance: impl Fn(usize) -> f64) -> Option<(usize, f64)> {
+    pub fn sample(&self, receiver: &LightSampleContext, mut u: f64) -> Option<(usize, f64)> {
         let (mut here, mut probability) = (0, 1.0);
         loop {
-            let link = self.nodes[here].link;
-            if link & Node::LEAF != 0 {
-                return Some(((link & !Node::LEAF) as usize, probability));
+            let importances = self.importances(here, receiver);
+            let (lane, share) = importances.choose(&mut u)?;
+            probability *= share;
+            let link = self.nodes[here].links[lane];
+            if link & LEAF != 0 {
+                return Some(((link & !LEAF) as usize, probability));
             }
-            let share = self.share(here, &importance)?;
-            if u < share {
-                (here, u, probability) = (here + 1, u / share, probability * share);
-            } else {
-                (here, u, probability) = (link as usize, (u - share) / (1.0 - share), probability * (1.0 - share));
-            }
-            // The quotient may be rounded up to 1.
-            u = u.min(1.0 - f64::EPSILON / 2.0);
+            here = link as usize;
         }
     }
 
     /// Probability of selecting a light for a receiver.
     #[inline]
     pub fn probability(&self, light: usize, receiver: &LightSampleContext) -> f64 {
-        let mut trail = self.trails[light];
-        if trail == NOWHERE {
-            return 0.0;
+        let (mut path, mut depth, mut place) = ([0; LEVELS], 0, self.places[light]);
+        while place != NOWHERE {
+            (path[depth], depth) = (place, depth + 1);
+            place = self.nodes[place as usize / WIDTH].place;
         }
-        let (mut here, mut probability) = (0, 1.0);
-        loop {
-            let link = self.nodes[here].link;
-            if link & Node::LEAF != 0 {
-                return probability;
-            }
-            let importance = |node: usize| self.nodes[node].bounds.importance(receiver);
-            let Some(share) = self.share(here, importance) else { return 0.0 };
-            if trail & 1 == 0 {
-                (here, probability) = (here + 1, probability * share);
-            } else {
-                (here, probability) = (link as usize, probability * (1.0 - share));
-            }
+        let mut probability = if depth > 0 { 1.0 } else { 0.0 };
+        // From the root, so that the product is that of the draw.
+        for &place in path[..depth].iter().rev() {
+            let importances = self.importances(place as usize / WIDTH, receiver);
+            probability *= importances.share(place as usize % WIDTH);
             if probability == 0.0 {
                 return 0.0;
             }
-            trail >>= 1;
         }
-    }
-
-    /// Probability of an inner node's first child; `None` if neither child contributes.
-    #[inline(always)]
-    fn share(&self, node: usize, importance: impl Fn(usize) -> f64) -> Option<f64> {
-        let first = importance(node + 1);
-        let second = importance(self.nodes[node].link as usize);
-        let sum = first + second;
-        (sum > 0.0).then(|| first / sum)
+        probability
     }
 
     /// Memory in bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.trails.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.places.as_slice())
     }
+}
+
+/// Builds the binary tree of some lights at the end of `nodes`, and returns its bounds.
+fn build(items: &mut [Item], depth: u32, nodes: &mut Vec<BinaryNode>) -> LightBounds {
+    let here = nodes.len();
+    if let [item] = items {
+        nodes.push(BinaryNode { bounds: item.bounds, link: LEAF | item.light });
+        return item.bounds;
+    }
+    let middle = split(items, depth);
+    nodes.push(BinaryNode { bounds: items[0].bounds, link: 0 });
+    let (first, second) = items.split_at_mut(middle);
+    let first = build(first, depth + 1, nodes);
+    nodes[here].link = nodes.len() as u32;
+    let second = build(second, depth + 1, nodes);
+    nodes[here].bounds = first.union(&second);
+    nodes[here].bounds
 }
 
 /// Partitions items into two non-empty parts, and returns the start of the second.

@@ -35,6 +35,7 @@ mod tests;
 mod triangle;
 mod triangle_block;
 mod waved;
+mod wide_bounds;
 
 pub use aim::Aim;
 pub use bounds::LightBounds;
