@@ -68,7 +68,8 @@ impl<F: Lossy> Conductor<F> {
     pub fn of(fresnel: Reflectance, facets: Option<F>) -> Self {
         let rough = facets.map(|facets| {
             let loss = facets.mirror();
-            let multiple = fresnel.seen(|mean| made_up_of(loss.average(), mean)).at_least(Rgb::ZERO);
+            let lost = loss.average();
+            let multiple = fresnel.seen(|mean| made_up_of(lost, mean)).at_least(Rgb::ZERO);
             RoughFacets { facets, loss, grazing: Grazing::new(facets.mean_alpha()), multiple }
         });
         Self { fresnel, rough }

@@ -51,28 +51,33 @@ impl SurfaceInteraction {
         outside: f64,
     ) -> Self {
         let gaze = gaze.into();
-        if outside == 1.0
-            && gaze.width == 0.0
-            && let Some(bsdf) = scene.plan().constant(surface.shape, surface.is_front(ray))
-        {
-            let shading = surface.shading_normal;
-            return Self::with(ray, surface, (shading, None), bsdf.clone());
+        let constant = if outside == 1.0 { scene.plan().constant(surface.shape, surface.is_front(ray)) } else { None };
+        match constant {
+            Some(bsdf) if gaze.width == 0.0 => Self::with(ray, surface, (surface.shading_normal, None), bsdf.clone()),
+            _ => Self::mapped(scene, ray, hit, surface, (gaze, outside), constant),
         }
-        Self::mapped(scene, ray, hit, surface, gaze, outside)
     }
 
-    /// The interaction for a material that must be evaluated at the point.
-    fn mapped(scene: &Scene, ray: &Ray, hit: &Hit, surface: SurfacePoint, gaze: LookupContext, outside: f64) -> Self {
+    /// The interaction for a material that must be evaluated at the point, unless its BSDF is `constant`.
+    fn mapped(
+        scene: &Scene,
+        ray: &Ray,
+        hit: &Hit,
+        surface: SurfacePoint,
+        (gaze, outside): (LookupContext, f64),
+        constant: Option<&BsdfMix>,
+    ) -> Self {
         let material = scene.material_at(&surface);
         let mut needs = material.needs();
         needs.tangents |= gaze.width > 0.0;
         let point = shading_point(scene, ray, hit, surface, needs, gaze, outside);
         let shading = material.normal(&point).unwrap_or(surface.shading_normal);
         let normal = (shading, material.tangent(&point));
+        let bsdf = constant.cloned().unwrap_or_else(|| material.bsdf(&point));
         let mut here = if point.as_given && shading != surface.normal {
-            Self::as_given(ray, surface, normal, material.bsdf(&point))
+            Self::as_given(ray, surface, normal, bsdf)
         } else {
-            Self::with(ray, surface, normal, material.bsdf(&point))
+            Self::with(ray, surface, normal, bsdf)
         };
         if gaze.width > 0.0 {
             here.curvature = here.side * mean_curvature(&point);
