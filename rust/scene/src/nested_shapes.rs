@@ -77,11 +77,19 @@ fn union(a: Extent, b: Extent) -> Extent {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
+/// Boxes nearer than this share of their greatest coordinate count as overlapping: several times the reach within
+/// which surfaces are one boundary ([`super::RayOrigin::reach`]).
+const NEAR: f64 = 1e-10;
+
 /// Returns whether any two of `some` boxes overlap or, with `others`, one of each. A sweep along an axis tests boxes
 /// that begin before another ends.
 fn share(some: &[Extent], others: &[Extent]) -> bool {
-    let mut all: Vec<(Extent, bool)> = some.iter().map(|&one| (one, false)).collect();
-    all.extend(others.iter().map(|&one| (one, true)));
+    let widened = |&[low, high]: &Extent| {
+        let room = NEAR * low.abs().max(high.abs()).max_element();
+        [low - room, high + room]
+    };
+    let mut all: Vec<(Extent, bool)> = some.iter().map(|one| (widened(one), false)).collect();
+    all.extend(others.iter().map(|one| (widened(one), true)));
     if others.is_empty() && all.len() < 2 {
         return false;
     }

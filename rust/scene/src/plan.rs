@@ -22,7 +22,7 @@ pub struct SceneNeeds {
     pub masks: bool,
     /// A closed shape with its own index of refraction.
     pub interiors: bool,
-    /// Several interiors, which may be nested, or one that may contain a sheet whose BSDF depends on its surroundings.
+    /// Interiors that may overlap or touch, or one that may contain a sheet whose BSDF depends on its surroundings.
     pub nested: bool,
     /// Shapes that may overlap interiors, by their boxes.
     pub standing: Standing,
@@ -64,8 +64,7 @@ impl BitOr for SceneNeeds {
             scattering: self.scattering | other.scattering,
             masks: self.masks | other.masks,
             interiors: self.interiors | other.interiors,
-            // Two interiors may overlap.
-            nested: self.nested | other.nested | (self.interiors & other.interiors),
+            nested: self.nested | other.nested,
             standing: self.standing | other.standing,
             media: self.media | other.media,
             even_media: self.even_media | other.even_media,
@@ -146,7 +145,7 @@ impl Plan {
         needs.waves |= needs.points.waves;
         if needs.interiors {
             needs.standing = Standing::of(geometry, materials.iter().map(|material| &**material));
-            needs.nested |= needs.standing.sheets;
+            needs.nested |= needs.standing.sheets | needs.standing.glass;
         }
         let encloses = |shape: u32| {
             let material = &materials[shape as usize];
@@ -179,7 +178,7 @@ impl Plan {
         }
     }
 
-    /// Features of a prototype. If it has an interior, its instances may overlap.
+    /// Features of a prototype.
     fn of_copies(prototype: &super::Prototype, rounding: &mut Rounding) -> SceneNeeds {
         let geometry = prototype.geometry();
         *rounding = rounding.worst(geometry.rounding());
@@ -192,7 +191,7 @@ impl Plan {
                     None => Self::of(material, emission),
                 };
         }
-        SceneNeeds { nested: needs.nested | needs.interiors, ..needs }
+        needs
     }
 
     /// Returns the plan with a medium around everything, or none.
@@ -416,13 +415,15 @@ mod tests {
     #[test]
     fn what_lies_in_one_another_takes_two() {
         let glass = || Odd { interior: Some(Interior::new(1.5, 0)), is_opaque: true };
-        let sheet = |material: Odd| Shape {
+        let sheet_at = |material: Odd, height: f32| Shape {
             material: Arc::new(material),
-            ..shape(rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0)
+            ..shape(rectangle([0.0, 0.0, height], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.5; 3], 0.0)
         };
+        let sheet = |material: Odd| sheet_at(material, 0.0);
         let plan = |shapes| crate::fixtures::scene(SceneDescription { shapes, ..Default::default() }).plan().clone();
         assert!(!plan(vec![sheet(glass())]).needs().nested);
         assert!(plan(vec![sheet(glass()), sheet(glass())]).needs().nested);
+        assert!(!plan(vec![sheet(glass()), sheet_at(glass(), 0.1)]).needs().nested);
         let mask = Odd { interior: None, is_opaque: false };
         assert!(plan(vec![sheet(mask)]).needs().masks);
     }
