@@ -311,7 +311,7 @@ impl Plan {
     pub fn kernel(&self) -> &'static str {
         match &self.needs {
             SceneNeeds { media: true, .. } => "media",
-            SceneNeeds { masks: false, nested: false, waves: false, .. } if !self.as_given => "wavefront",
+            SceneNeeds { nested: false, waves: false, .. } if !self.as_given => "wavefront",
             _ => "general",
         }
     }

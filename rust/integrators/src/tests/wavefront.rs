@@ -11,7 +11,7 @@ use raywright_optics::{AnyBsdf, Coated, Conductor, Dielectric, Diffuse, Mirror, 
 use raywright_scene::Sides;
 use raywright_scene::fixtures::{cornell, furnace, rectangle, scene, shape};
 use raywright_scene::materials::BsdfMix;
-use raywright_scene::textures::Needs;
+use raywright_scene::textures::{Needs, TexturePoint};
 use raywright_scene::{
     ConstantEnvironment, Light, Material, Mesh, PointLight, Scene, SceneDescription, ShadingPoint, Shape,
 };
@@ -294,4 +294,46 @@ fn what_a_sample_finds_depends_on_no_other() {
             assert!(in_parts(part) == whole, "{part} at a time");
         }
     }
+}
+
+/// A matte surface of which a part is there.
+#[derive(Debug)]
+struct Pierced(f64);
+
+impl Material for Pierced {
+    fn bsdf(&self, _at: &ShadingPoint) -> BsdfMix {
+        Diffuse { reflectance: Rgb::new(0.8, 0.6, 0.3) }.into()
+    }
+    fn needs(&self) -> Needs {
+        Needs::NONE
+    }
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+    fn opacity(&self, _at: &TexturePoint) -> f64 {
+        self.0
+    }
+    fn is_opaque(&self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn stages_pass_masks() {
+    let lamp = || shape(rectangle([-0.5, 3.9, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0; 3], 8.0);
+    let sheet = |y: f32, opacity: f64| Shape {
+        material: Arc::new(Pierced(opacity)),
+        ..shape(rectangle([-1.5, y, -1.5], [0.0, 0.3, 3.0], [3.0, 0.0, 0.0]), [0.0; 3], 0.0)
+    };
+    let own = Shape { emission: Rgb::splat(5.0).into(), ..sheet(0.5, 0.5) };
+    let inside = vec![
+        sheet(2.0, 0.4),
+        sheet(3.0, 0.7),
+        sheet(1.0, 0.0),
+        own,
+        ball(1.0, 0.5, -1.0, 0.5, Mirror { reflectance: Rgb::ONE }),
+    ];
+    let scene = room(vec![lamp()], inside);
+    assert!(scene.plan().needs().masks && scene.plan().kernel() == "wavefront");
+    assert_same(&scene, DVec3::new(0.2, 1.4, 1.7));
 }

@@ -9,6 +9,7 @@ mod direct_light;
 mod emission;
 mod groups;
 mod guided;
+mod masks;
 mod matte;
 mod matte_stages;
 mod queues;
@@ -46,14 +47,13 @@ impl<'a> Wavefront<'a> {
         Self { job, max_depth, roulette_depth, shares, guide }
     }
 
-    /// Whether a picture is of a scene that has what stages know, and nothing else: opaque surfaces in
-    /// empty space, seen so wide
-    /// that f32 tells pixels apart.
+    /// Whether a picture is of a scene that has what stages know, and nothing else: surfaces in empty space, seen so
+    /// wide that f32 tells pixels apart.
     pub fn takes(job: &Job<'_>) -> bool {
         let scene = job.scene;
         let (plan, needs) = (scene.plan(), scene.plan().needs());
         tells_pixels_apart(job)
-            && !(needs.masks || needs.nested || needs.media || needs.waves)
+            && !(needs.nested || needs.media || needs.waves)
             && !plan.normals_as_given()
             && scene.lights().radiances().all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
     }

@@ -2,6 +2,7 @@
 
 use super::bsdf_block::{BsdfBlock, Scattered};
 use super::emission;
+use super::masks::Masks;
 use super::matte::Reflectances;
 use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue};
 use crate::path_sharing::PathSharing;
@@ -48,6 +49,7 @@ pub(super) struct WavefrontWorker<'a> {
     /// The kind of each primitive's BSDF, where there are few.
     pub(super) kinds: Vec<u8>,
     pub(super) extra: Extra,
+    pub(super) masks: Option<Masks>,
     /// What is drawn of each of few lights.
     pub(super) each: Vec<LightBlock>,
     pub(super) block: Box<Block<'a>>,
@@ -137,6 +139,7 @@ impl<'a> WavefrontWorker<'a> {
             outside: Vec::with_capacity(BATCH),
             kinds: (0..few).map(|primitive| kind_of(scene, primitive) as u8).collect(),
             extra,
+            masks: Masks::of(scene),
             each: Vec::new(),
             block: Box::new(block),
         }
@@ -286,6 +289,7 @@ impl<'a> WavefrontWorker<'a> {
                 radiance[queue.sample[i] as usize] += Rgb::new(r[i].into(), g[i].into(), b[i].into());
             }
         }
+        self.dim_by_masks(radiance);
     }
 
     /// Follows the paths of these samples to their ends, and adds what they find.
@@ -303,7 +307,10 @@ impl<'a> WavefrontWorker<'a> {
             if self.paths[0].rays.len == 0 || cancel.is_raised() {
                 break;
             }
-            timed(Part::Closest, || self.find_closest());
+            timed(Part::Closest, || {
+                self.find_closest();
+                self.pass_masks(&mut numbers, bounce, samples_here);
+            });
             self.classify();
             timed(Part::Arriving, || emission::add_outside(self.scene, &self.paths[0], &self.outside, radiance));
             self.paths[1].rays.len = 0;
