@@ -34,7 +34,7 @@ class Plan:
     Attributes
     ----------
     kernel : str
-        Kernel that traces paths: ``"wavefront"`` (stages in float32), ``"general"`` (masks, nested
+        Kernel that traces paths: ``"wavefront"`` (stages in float32), ``"general"`` (nested
         dielectrics, wavelengths) or ``"media"``.
     rows : tuple of PlanRow
         Every feature, whether this scene has it, and the consequence.

@@ -2,6 +2,7 @@
 
 use super::kinds::{self, floor};
 use super::{job, samples_of};
+use crate::transport::{Follow, Settings};
 use crate::wavefront::Wavefront;
 use crate::{CameraSample, Guide, Integrator, Path, Session};
 use raywright_base::math::{DVec3, Ray, Vec3};
@@ -39,10 +40,14 @@ fn found(session: &dyn Session, from: DVec3, count: u32) -> Vec<Rgb> {
 fn assert_same(scene: &Scene, from: DVec3) {
     assert!(Wavefront::takes(&job(scene)));
     let path = Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, ..Path::default() };
+    let stages = Wavefront::new(job(scene), path.max_depth, path.roulette_depth, false, None);
+    assert_equal_samples(&stages, &*path.begin_in_general(job(scene), &Cancel::default()), from);
+}
+
+#[track_caller]
+fn assert_equal_samples(stages: &dyn Session, in_f64: &dyn Session, from: DVec3) {
     let count = 20_000;
-    let stages = found(&Wavefront::new(job(scene), path.max_depth, path.roulette_depth, false, None), from, count);
-    let session = path.begin_in_general(job(scene), &Cancel::default());
-    let wanted = found(&*session, from, count);
+    let (stages, wanted) = (found(stages, from, count), found(in_f64, from, count));
     let largest = wanted.iter().map(|value| value.max()).fold(0.0, f64::max);
     assert!(largest > 0.0);
     let differ = stages.iter().zip(&wanted).filter(|&(&got, &wanted)| {
@@ -336,4 +341,19 @@ fn stages_pass_masks() {
     let scene = room(vec![lamp()], inside);
     assert!(scene.plan().needs().masks && scene.plan().kernel() == "wavefront");
     assert_same(&scene, DVec3::new(0.2, 1.4, 1.7));
+}
+
+#[test]
+fn stages_cast_rays() {
+    let (cornell, _) = cornell(4, 4);
+    let lamp = shape(rectangle([-0.5, 3.9, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0; 3], 8.0);
+    let metal = Conductor::new(Rgb::new(0.2, 0.9, 1.1), Rgb::new(3.9, 2.4, 2.2), [0.4; 2]);
+    let glossy = room(vec![lamp], vec![of(rectangle([-1.0, 0.1, -1.0], [0.0, 0.0, 2.0], [2.0, 0.0, 0.0]), metal)]);
+    for (scene, from) in [(&cornell, DVec3::new(0.5, 0.6, 0.9)), (&glossy, DVec3::new(0.2, 1.4, 1.7))] {
+        for shadows in [true, false] {
+            let settings = Settings { follow: Follow::Nothing, shadows, ..Settings::path(Some(1), u32::MAX) };
+            let in_f64 = settings.begin_in_general(job(scene), &Cancel::default());
+            assert_equal_samples(&Wavefront::of_drawn_light(job(scene), shadows), &*in_f64, from);
+        }
+    }
 }

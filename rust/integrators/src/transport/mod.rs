@@ -94,12 +94,15 @@ impl Settings {
         }
     }
 
-    /// Whether they are those of a path tracer, the only ones that the special variants know.
+    /// Whether they are those of a path tracer.
     fn are_plain(&self) -> bool {
+        self.follow == Follow::All && self.shadows && self.are_of_stages()
+    }
+
+    /// Whether stages know them, but for what is followed and shadowed.
+    fn are_of_stages(&self) -> bool {
         self.light_samples == 1
             && self.splits == 1
-            && self.follow == Follow::All
-            && self.shadows
             && self.ambient.is_black()
             && self.least == 0.0
             && self.gather.is_none()
@@ -109,10 +112,14 @@ impl Settings {
     /// variant that has it.
     pub fn begin<'a>(self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let guide = if self.guided { Guide::of(job.scene, cancel) } else { None };
-        if self.are_plain() && Wavefront::takes(&job) {
-            return Box::new(Wavefront::new(job, self.max_depth, self.roulette_depth, self.shares, guide));
+        let is_of_stages = self.are_of_stages() && Wavefront::takes(&job);
+        match (self.follow, self.max_depth) {
+            (Follow::All, depth) if is_of_stages && self.shadows => {
+                Box::new(Wavefront::new(job, depth, self.roulette_depth, self.shares, guide))
+            }
+            (Follow::Nothing, Some(1)) if is_of_stages => Box::new(Wavefront::of_drawn_light(job, self.shadows)),
+            _ => Box::new(Transport { settings: self, job, guide, known: None }),
         }
-        Box::new(Transport { settings: self, job, guide, known: None })
     }
 
     /// As [`Settings::begin`], by the loop that knows everything.

@@ -54,10 +54,11 @@ loops! {
         pdf: &[f64; LANES],
         counts: &[f64; LANES],
         asks: &[bool; LANES],
+        follows: f64,
         arriving: &mut RgbLanes,
     ) {
         for i in 0..LANES {
-            let ratio = pdf[i] / f64::from(lights.pdf[i]);
+            let ratio = follows * pdf[i] / f64::from(lights.pdf[i]);
             let (t, light) = (throughput.get(i).as_dvec3(), lights.weight.get(i).as_dvec3());
             let factor = counts[i] / (1.0 + ratio * ratio);
             let all = scattered.get(i) * Rgb::from_array((t * light * factor).to_array());
@@ -171,14 +172,14 @@ impl<'a> BsdfBlock<'a> {
         Some((reflectance, normal.as_vec3(), is_bent))
     }
 
-    /// What arrives of light that was drawn, in some lanes, if nothing blocks it.
+    /// What arrives of light that was drawn, in some lanes, if nothing blocks it. `follows` is 1, or 0 if paths end there.
     pub fn reflect(
         &self,
         level: Level,
         surfaces: &SurfaceBlock,
         lights: &LightBlock,
         throughput: &SingleLanes,
-        asks: &[bool; LANES],
+        (asks, follows): (&[bool; LANES], f64),
         arriving: &mut RgbLanes,
     ) {
         let (mut wi, mut scattered) = (VectorLanes::ZERO, RgbLanes::ZERO);
@@ -192,7 +193,7 @@ impl<'a> BsdfBlock<'a> {
                 pdf[lane] = self.guided.density(level, lane, pdf[lane], direction);
             }
         }
-        weigh(level, throughput, lights, &scattered, &pdf, &counts, &asks, arriving);
+        weigh(level, throughput, lights, &scattered, &pdf, &counts, &asks, follows, arriving);
     }
 
     /// Stage: paths are scattered.

@@ -25,7 +25,9 @@ impl WavefrontWorker<'_> {
         if !self.scene.lights().is_dark() && self.block.bsdf.asks.contains(&true) {
             timed(Part::Light, || self.ask_for_light_of_any(numbers, bounce));
         }
-        timed(Part::Continuation, || self.scatter_from_any(numbers, bounce));
+        if self.follows {
+            timed(Part::Continuation, || self.scatter_from_any(numbers, bounce));
+        }
     }
 
     /// Stage: materials are asked how sixteen surfaces scatter.
@@ -48,6 +50,7 @@ impl WavefrontWorker<'_> {
     /// surfaces are glossy and lights few, of each, and of these draws one stands for all.
     fn ask_for_light_of_any(&mut self, numbers: &SamplerLanes, bounce: u32) {
         let (level, block) = (self.level, &mut *self.block);
+        let follows = if self.follows { 1.0 } else { 0.0 };
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
         let dimensions = Dimensions::of(bounce, 0);
@@ -59,7 +62,7 @@ impl WavefrontWorker<'_> {
         let mut arriving = RgbLanes::ZERO;
         if asks_one.contains(&true) {
             lights.draw_block(level, geometry, surfaces, normal, &choice, &u, &mut block.lights);
-            block.bsdf.reflect(level, surfaces, &block.lights, &block.throughput, &asks_one, &mut arriving);
+            block.bsdf.reflect(level, surfaces, &block.lights, &block.throughput, (&asks_one, follows), &mut arriving);
         }
         if asks_each.contains(&true) {
             let mut all = ResampledLanes::new(choice);
@@ -68,7 +71,7 @@ impl WavefrontWorker<'_> {
                 let mut of_one = RgbLanes::ZERO;
                 numbers.choice_and_pair(level, dimensions.light_choice(one), &mut choice, &mut u);
                 lights.draw_one_block(one, level, geometry, (surfaces, normal), &choice, &u, drawn);
-                block.bsdf.reflect(level, surfaces, drawn, &block.throughput, &asks_each, &mut of_one);
+                block.bsdf.reflect(level, surfaces, drawn, &block.throughput, (&asks_each, follows), &mut of_one);
                 resample(level, &mut all, one.into(), &of_one);
             }
             for lane in 0..surfaces.count {

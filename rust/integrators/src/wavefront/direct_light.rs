@@ -15,12 +15,14 @@ pub(super) fn power_heuristic(pdf: f32, other: f32) -> f32 {
 }
 
 loops! {
-    /// What a matte surface reflects of light that was drawn; `is_lit` is all bits where that is anything.
+    /// What a matte surface reflects of light that was drawn. `follows` is 1, or 0 if paths end there and no light is
+    /// found by chance; `is_lit` is all bits where that is anything.
     pub(super) fn reflect(
         surfaces: &SurfaceBlock,
         lights: &LightBlock,
         reflectance: &SingleLanes,
         throughput: &SingleLanes,
+        follows: f32,
         arriving: &mut SingleLanes,
         is_lit: &mut [u32; LANES],
     ) {
@@ -28,7 +30,7 @@ loops! {
             let cosine = surfaces.normal.get(i).dot(lights.direction.get(i));
             let pdf = cosine * FRAC_1_PI;
             let all = throughput.get(i) * reflectance.get(i) * lights.weight.get(i);
-            let all = all * (pdf * power_heuristic(lights.pdf[i], pdf));
+            let all = all * (pdf * power_heuristic(lights.pdf[i], follows * pdf));
             let lit = mask(lights.pdf[i] > 0.0) & mask(cosine > 0.0) & mask(all.x + all.y + all.z > 0.0);
             arriving.set(i, all * choose(lit, 1.0, 0.0));
             is_lit[i] = lit;

@@ -18,7 +18,9 @@ impl WavefrontWorker<'_> {
         if !self.scene.lights().is_dark() {
             timed(Part::Light, || self.ask_for_light(numbers, bounce));
         }
-        timed(Part::Continuation, || self.scatter(numbers, bounce));
+        if self.follows {
+            timed(Part::Continuation, || self.scatter(numbers, bounce));
+        }
     }
 
     /// Stage: light is drawn for sixteen surfaces, and its shadow rays are queued.
@@ -43,6 +45,7 @@ impl WavefrontWorker<'_> {
             &block.lights,
             &block.reflectance,
             &block.throughput,
+            if self.follows { 1.0 } else { 0.0 },
             &mut arriving,
             &mut is_lit,
         );

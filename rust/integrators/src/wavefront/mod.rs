@@ -27,6 +27,8 @@ pub(super) struct Wavefront<'a> {
     max_depth: Option<u32>,
     roulette_depth: u32,
     shares: bool,
+    follows: bool,
+    shadows: bool,
     /// Where light comes from by way of what is sharp, if paths are guided and there is any.
     guide: Option<Arc<Guide>>,
 }
@@ -44,7 +46,13 @@ impl<'a> Wavefront<'a> {
         shares: bool,
         guide: Option<Arc<Guide>>,
     ) -> Self {
-        Self { job, max_depth, roulette_depth, shares, guide }
+        Self { job, max_depth, roulette_depth, shares, follows: true, shadows: true, guide }
+    }
+
+    /// Direct light that is drawn, without paths that go on, and with shadows or without.
+    pub fn of_drawn_light(job: Job<'a>, shadows: bool) -> Self {
+        let (shares, follows) = (false, false);
+        Self { job, max_depth: Some(1), roulette_depth: u32::MAX, shares, follows, shadows, guide: None }
     }
 
     /// Whether a picture is of a scene that has what stages know, and nothing else: surfaces in empty space, seen so
@@ -74,6 +82,11 @@ fn tells_pixels_apart(job: &Job<'_>) -> bool {
 impl Session for Wavefront<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
         let depths = (self.max_depth, self.roulette_depth);
-        Box::new(WavefrontWorker::new(&self.job, depths, self.shares, self.guide.as_deref()))
+        Box::new(WavefrontWorker::new(
+            &self.job,
+            depths,
+            (self.shares, self.follows, self.shadows),
+            self.guide.as_deref(),
+        ))
     }
 }

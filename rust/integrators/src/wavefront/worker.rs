@@ -28,6 +28,9 @@ pub(super) struct WavefrontWorker<'a> {
     pub(super) footprint: Footprint,
     pub(super) max_depth: Option<u32>,
     pub(super) roulette_depth: u32,
+    /// Whether paths go on from surfaces, and whether what lies on the way to a light shadows it.
+    pub(super) follows: bool,
+    shadows_block: bool,
     /// What paths of a group share, if they do.
     pub(super) sharing: Option<PathSharing>,
     /// What samples find for themselves, and then what they find for sharing.
@@ -95,7 +98,7 @@ impl<'a> WavefrontWorker<'a> {
     pub fn new(
         job: &Job<'a>,
         (max_depth, roulette_depth): (Option<u32>, u32),
-        shares: bool,
+        (shares, follows, shadows_block): (bool, bool, bool),
         guide: Option<&'a Guide>,
     ) -> Self {
         let (scene, level) = (job.scene, Level::current().unwrap_or(Level::Scalar));
@@ -126,6 +129,8 @@ impl<'a> WavefrontWorker<'a> {
             footprint: job.footprint,
             max_depth,
             roulette_depth: roulette_depth.min(roulette::AT_LATEST),
+            follows,
+            shadows_block,
             sharing: shares.then(|| PathSharing::new(level)),
             found: Vec::new(),
             reflectances: Reflectances::new(scene),
@@ -282,7 +287,9 @@ impl<'a> WavefrontWorker<'a> {
     /// Stage: shadow rays are followed, and what arrives along those that nothing blocks is added.
     fn follow_shadows(&mut self, radiance: &mut [Rgb]) {
         let queue = &self.shadows;
-        self.scene.are_occluded(self.level, &queue.rays, &mut self.is_occluded);
+        if self.shadows_block {
+            self.scene.are_occluded(self.level, &queue.rays, &mut self.is_occluded);
+        }
         let [r, g, b] = &queue.arriving;
         for (i, &is_occluded) in self.is_occluded[..queue.rays.len].iter().enumerate() {
             if !is_occluded {
