@@ -49,20 +49,6 @@ impl RayChunk<'_> {
         self.runs(|Run { place, at, len }| copy(&from[place..][..len], &mut to[at..][..len]));
     }
 
-    /// The same the other way, of numbers that may be wanted in f32 and may be there already.
-    #[inline(always)]
-    fn deliver<T: Rounded>(&self, from: &[T], to: Option<&mut To<'_, T>>) {
-        match to {
-            Some(To::Double(to)) if !self.is_sequence() => self.write(from, to),
-            Some(To::Single(to)) => self.runs(|Run { place, at, len }| {
-                for (to, &from) in to[place..][..len].iter_mut().zip(&from[at..][..len]) {
-                    *to = from.single();
-                }
-            }),
-            _ => {}
-        }
-    }
-
     /// The same the other way.
     #[inline(always)]
     fn write<T: Copy>(&self, from: &[T], to: &mut [T]) {
@@ -131,6 +117,20 @@ fn copy<T: Copy>(from: &[T], to: &mut [T]) {
     }
     for (from, to) in others.iter().zip(to_others) {
         *to = *from;
+    }
+}
+
+/// Writes a run of numbers that may be wanted in f32, or not at all.
+#[inline(always)]
+fn put<T: Rounded>(from: &[T], to: Option<&mut To<'_, T>>, Run { place, at, len }: Run) {
+    match to {
+        Some(To::Double(to)) => copy(&from[at..][..len], &mut to[place..][..len]),
+        Some(To::Single(to)) => {
+            for (to, &from) in to[place..][..len].iter_mut().zip(&from[at..][..len]) {
+                *to = from.single();
+            }
+        }
+        None => {}
     }
 }
 
@@ -291,20 +291,35 @@ impl RayArrays<'_> {
                 };
                 tree.intersect(rays, HitColumns { t, uv, primitive: primitives });
             }
-            let shapes = match &mut to.shape {
-                Some(to) if is_direct => &mut to[here.clone()],
-                _ => some(&mut room.shape, len),
-            };
-            locate(geometry, shapes, primitives);
-            part.deliver(&room.t, to.t.as_mut());
-            part.deliver(&room.uv, to.uv.as_mut());
-            if !is_direct {
-                for (from, to) in [(&room.shape, &mut to.shape), (&room.primitive, &mut to.primitive)] {
-                    if let Some(to) = to {
-                        part.write(from, to);
-                    }
+            let has_one_shape = geometry.shapes() == 1;
+            if !has_one_shape {
+                let shapes = match &mut to.shape {
+                    Some(to) if is_direct => &mut to[here.clone()],
+                    _ => some(&mut room.shape, len),
+                };
+                for (shape, primitive) in shapes.iter_mut().zip(&mut *primitives) {
+                    (*shape, *primitive) = located(geometry, *primitive);
                 }
+            } else if let Some(to) = to.shape.as_mut().filter(|_| is_direct) {
+                only_shape(primitives, &mut to[here.clone()]);
             }
+            // All parts of a run together, as they find the places of a tile only once.
+            part.runs(|run| {
+                let Run { place, at, len } = run;
+                put(&room.t, to.t.as_mut().filter(|to| !is_direct || to.is_single()), run);
+                put(&room.uv, to.uv.as_mut().filter(|to| !is_direct || to.is_single()), run);
+                if is_direct {
+                    return;
+                }
+                if let Some(to) = &mut to.primitive {
+                    copy(&room.primitive[at..][..len], &mut to[place..][..len]);
+                }
+                match &mut to.shape {
+                    Some(to) if has_one_shape => only_shape(&room.primitive[at..][..len], &mut to[place..][..len]),
+                    Some(to) => copy(&room.shape[at..][..len], &mut to[place..][..len]),
+                    None => {}
+                }
+            });
         });
     }
 
@@ -331,16 +346,10 @@ fn located(geometry: &Geometry, primitive: i32) -> (i32, i32) {
     (shape as i32, primitive as i32)
 }
 
-/// Converts global primitive numbers to numbers within their shapes.
-fn locate(geometry: &Geometry, shape: &mut [i32], primitive: &mut [i32]) {
-    if geometry.shapes() == 1 {
-        for (shape, &primitive) in shape.iter_mut().zip(&*primitive) {
-            // 0, or −1 for none.
-            *shape = primitive >> 31;
-        }
-        return;
-    }
-    for (shape, primitive) in shape.iter_mut().zip(primitive) {
-        (*shape, *primitive) = located(geometry, *primitive);
+/// The shapes of primitives in a scene of one: 0, or −1 for none.
+#[inline(always)]
+fn only_shape(primitive: &[i32], shape: &mut [i32]) {
+    for (shape, &primitive) in shape.iter_mut().zip(primitive) {
+        *shape = primitive >> 31;
     }
 }

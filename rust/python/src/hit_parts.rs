@@ -38,6 +38,12 @@ pub enum To<'a, T: Rounded> {
 }
 
 impl<T: Rounded> To<'_, T> {
+    /// Returns whether they are f32.
+    #[inline(always)]
+    pub fn is_single(&self) -> bool {
+        matches!(self, Self::Single(_))
+    }
+
     #[inline(always)]
     fn put(&mut self, i: usize, value: T) {
         match self {

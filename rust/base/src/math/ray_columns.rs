@@ -161,8 +161,8 @@ impl<'a> RayColumns<'a> {
 
     /// Origin, direction, `t_min` and `t_max`.
     #[inline(always)]
-    pub fn parts(&self) -> (Vectors<'a>, Vectors<'a>, Numbers<'a>, Numbers<'a>) {
-        (self.origin, self.direction, self.t_min, self.t_max)
+    pub fn parts(&self) -> (&Vectors<'a>, &Vectors<'a>, &Numbers<'a>, &Numbers<'a>) {
+        (&self.origin, &self.direction, &self.t_min, &self.t_max)
     }
 
     /// One of the rays.

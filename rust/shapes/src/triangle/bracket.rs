@@ -161,7 +161,8 @@ mod tests {
         columns.take(Scalar, &RayBatch::Rows(&[*ray]), 0, &region);
         let is_plain = columns.plain & 1 == 1;
         // Rays with a common origin, also in the variant for different origins.
-        let mut shared = L::rays(Scalar, &columns, &region);
+        let mut shared = BlockRays::NONE;
+        L::take(Scalar, &columns, &region, &mut shared);
         assert!(shared.share_origin || !is_plain);
         shared.errors.weight *= share;
         let scattered = BlockRays { share_origin: false, ..shared.clone() };

@@ -18,13 +18,19 @@ use raywright_base::math::robust::{UNIT, greater};
 /// Three coordinates.
 type Vector = [f64; 3];
 
+/// Maximum error of a known `t` before rounding, as a share of it.
+const SHARE: f64 = UNIT / 16.0;
+
 /// The intersection of a line with a plane.
 #[derive(Clone, Copy)]
 pub(super) struct Depth {
     /// The computed value, rounded once.
     pub t: f64,
-    /// Bound on its error before rounding; infinite or NaN if unknown.
+    /// Half a bound on its error before rounding, times `size`.
     error: f64,
+    /// The denominator's magnitude.
+    size: f64,
+    denominator_error: f64,
 }
 
 impl Depth {
@@ -44,28 +50,40 @@ impl Depth {
         let (n, n_low) = ([x, y, z], [x_low, y_low, z_low]);
         let n_split = split(n);
         let numerator = dot(fused, (s, s_low, split(s)), (n, n_low, n_split));
-        let denominator = dot(fused, (d, [0.0; 3], split(d)), (n, n_low, n_split));
+        let denominator = dot_single(fused, (d, split(d)), (n, n_low, n_split));
         let t = quotient(fused, numerator, denominator);
         let edge = greater(largest(e), largest(f));
         let square = edge * edge;
         let numerator_error = OF_NUMERATOR * square * largest(s) + 1e-210;
         let denominator_error = OF_DENOMINATOR * square + 1e-290;
-        let size = denominator.0.abs();
-        let error = 2.0 * (numerator_error + t.abs() * denominator_error) / size;
-        Self { t, error: if size >= 4.0 * denominator_error { error } else { f64::INFINITY } }
+        let error = numerator_error + t.abs() * denominator_error;
+        Self { t, error, size: denominator.0.abs(), denominator_error }
+    }
+
+    /// Bound on the error of `t` before rounding; infinite or NaN if unknown.
+    #[inline(always)]
+    fn error(&self) -> f64 {
+        let error = 2.0 * self.error / self.size;
+        if self.size >= 4.0 * self.denominator_error { error } else { f64::INFINITY }
     }
 
     /// Return whether `t` is the f64 nearest to the exact one, except within 2⁻³ ulp of a tie.
     #[inline(always)]
     pub fn is_known(&self) -> bool {
-        const SHARE: f64 = UNIT / 16.0;
-        self.error <= SHARE * self.t.abs()
+        self.error() <= SHARE * self.t.abs()
+    }
+
+    /// Return whether [`Depth::is_known`] is certainly true, without a division. Where that matters the factor of two
+    /// covers the roundings: the error is never subnormal, and an overflow needs an infinite `t`.
+    #[inline(always)]
+    pub fn is_surely_known(&self) -> bool {
+        (self.size >= 4.0 * self.denominator_error) & (4.0 * self.error <= SHARE * self.t.abs() * self.size)
     }
 
     /// Return whether the f64 nearest to the exact `t` is certainly less than `t_min` or greater than `t_max`.
     #[inline(always)]
     pub fn is_beyond(&self, t_min: f64, t_max: f64) -> bool {
-        let room = self.error + 4.0 * UNIT * self.t.abs();
+        let room = self.error() + 4.0 * UNIT * self.t.abs();
         (self.t + room < t_min) | (self.t - room > t_max)
     }
 }
@@ -138,9 +156,21 @@ fn minor(fused: bool, i: usize, j: usize, e: Long, f: Long) -> (f64, f64) {
 /// The dot product. Its low part is at most half an ulp of the high part, barring near-total cancellation.
 #[inline(always)]
 fn dot(fused: bool, v: Long, w: Long) -> (f64, f64) {
-    let (x, x_low) = times(fused, v, 0, w, 0);
-    let (y, y_low) = times(fused, v, 1, w, 1);
-    let (z, z_low) = times(fused, v, 2, w, 2);
+    total([times(fused, v, 0, w, 0), times(fused, v, 1, w, 1), times(fused, v, 2, w, 2)])
+}
+
+/// The dot product with a vector in f64, without the terms that are zero.
+#[inline(always)]
+fn dot_single(fused: bool, (v, v_split): (Vector, [(f64, f64); 3]), (w, w_low, w_split): Long) -> (f64, f64) {
+    let (x, x_low) = product(fused, v[0], v_split[0], w[0], w_split[0]);
+    let (y, y_low) = product(fused, v[1], v_split[1], w[1], w_split[1]);
+    let (z, z_low) = product(fused, v[2], v_split[2], w[2], w_split[2]);
+    total([(x, x_low + v[0] * w_low[0]), (y, y_low + v[1] * w_low[1]), (z, z_low + v[2] * w_low[2])])
+}
+
+/// The sum of three double-doubles.
+#[inline(always)]
+fn total([(x, x_low), (y, y_low), (z, z_low)]: [(f64, f64); 3]) -> (f64, f64) {
     let (xy, first) = sum(x, y);
     let (all, second) = sum(xy, z);
     let low = ((x_low + y_low) + z_low) + (first + second);

@@ -111,6 +111,23 @@ impl Real for f64 {
     }
 }
 
+/// Sixteen vectors in place, if there are as many.
+#[inline(always)]
+fn whole<'a>(columns: &[&'a [f32]; 3], from: usize) -> Option<[&'a Column<f32>; 3]> {
+    let [x, y, z] = columns;
+    Some([x[from..].first_chunk()?, y[from..].first_chunk()?, z[from..].first_chunk()?])
+}
+
+/// Up to sixteen vectors. The last one fills missing places.
+#[inline(always)]
+fn some(columns: &[&[f32]; 3], from: usize) -> [Column<f32>; 3] {
+    let mut some = [[0.0; RAYS]; 3];
+    for axis in 0..3 {
+        read_column(columns[axis], from, &mut some[axis]);
+    }
+    some
+}
+
 impl PlainRays {
     /// No rays.
     pub const NONE: Self = Self {
@@ -138,24 +155,34 @@ impl PlainRays {
                     (d[0][i], d[1][i], d[2][i]) = (ray.direction.x, ray.direction.y, ray.direction.z);
                     (t[0][i], t[1][i]) = (ray.t_min, ray.t_max);
                 }
-                self.make(simd, &o, &d, &t, region);
+                self.make(simd, o.each_ref(), d.each_ref(), &t, region);
             }
             RayBatch::Columns(columns) => {
                 let (origin, direction, t_min, t_max) = columns.parts();
                 t_min.read(from, &mut t[0]);
                 t_max.read(from, &mut t[1]);
                 if let (Vectors::Single(origin), Vectors::Single(direction)) = (origin, direction) {
-                    let (mut o, mut d) = ([[0f32; RAYS]; 3], [[0f32; RAYS]; 3]);
-                    for axis in 0..3 {
-                        read_column(origin[axis], from, &mut o[axis]);
-                        read_column(direction[axis], from, &mut d[axis]);
-                    }
-                    self.make(simd, &o, &d, &t, region);
+                    let (some_o, some_d);
+                    let o = match whole(origin, from) {
+                        Some(o) => o,
+                        None => {
+                            some_o = some(origin, from);
+                            some_o.each_ref()
+                        }
+                    };
+                    let d = match whole(direction, from) {
+                        Some(d) => d,
+                        None => {
+                            some_d = some(direction, from);
+                            some_d.each_ref()
+                        }
+                    };
+                    self.make(simd, o, d, &t, region);
                 } else {
                     let (mut o, mut d) = ([[0f64; RAYS]; 3], [[0f64; RAYS]; 3]);
                     origin.read(from, &mut o);
                     direction.read(from, &mut d);
-                    self.make(simd, &o, &d, &t, region);
+                    self.make(simd, o.each_ref(), d.each_ref(), &t, region);
                 }
             }
         }
@@ -165,8 +192,8 @@ impl PlainRays {
     fn make<T: Real, S: Lanes<RAYS>>(
         &mut self,
         simd: S,
-        o: &[Column<T>; 3],
-        d: &[Column<T>; 3],
+        o: [&Column<T>; 3],
+        d: [&Column<T>; 3],
         [t_min, t_max]: &[Column<f64>; 2],
         region: &Region,
     ) {

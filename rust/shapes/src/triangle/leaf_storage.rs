@@ -56,8 +56,8 @@ impl<const N: usize> Leaves<N> for SingleLeaves<N> {
     }
 
     #[inline(always)]
-    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region) -> BlockRays {
-        BlockRays::new(simd, &rays.origin, rays, rays.absolute(simd, region))
+    fn take<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region, to: &mut BlockRays) {
+        to.take(simd, &rays.origin, rays, rays.absolute(simd, region));
     }
 
     #[inline(always)]
@@ -106,8 +106,8 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
     }
 
     #[inline(always)]
-    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, _: &Region) -> BlockRays {
-        BlockRays::new(simd, &rays.local, rays, rays.most(simd))
+    fn take<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, _: &Region, to: &mut BlockRays) {
+        to.take(simd, &rays.local, rays, rays.most(simd));
     }
 
     #[inline(always)]

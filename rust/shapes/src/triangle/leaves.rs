@@ -60,7 +60,7 @@ pub trait Leaves<const N: usize>: Send + Sync + Sized + 'static {
     fn ray(ray: &EdgeRay, region: &Region) -> BlockRay;
 
     /// Prepare sixteen rays for the pretest.
-    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region) -> BlockRays;
+    fn take<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region, to: &mut BlockRays);
 
     /// Memory use in bytes.
     fn bytes(&self) -> usize;

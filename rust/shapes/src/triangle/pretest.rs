@@ -161,17 +161,20 @@ impl BlockRays {
         errors.depth = greater(errors.depth, other.depth);
     }
 
-    /// Sixteen rays from origins in the leaves' units; `largest` is the greatest L.
+    /// Take sixteen rays from origins in the leaves' units; `largest` is the greatest L.
+    // In place, vector by vector: a copy by larger vectors than were stored has to wait for the stores.
     #[inline(always)]
-    pub(super) fn new<S: Lanes<RAYS>>(simd: S, origin: &[Column<f32>; 3], rays: &PlainRays, largest: f64) -> Self {
+    pub(super) fn take<S: Lanes<RAYS>>(&mut self, simd: S, origin: &[Column<f32>; 3], rays: &PlainRays, largest: f64) {
         // The interval of `t` rejects hits behind the ray.
-        let errors = PretestErrors::new(largest, false, rays.scale);
+        self.errors = PretestErrors::new(largest, false, rays.scale);
         let mut differ = 0;
-        for column in origin {
-            let (numbers, first) = (simd.load(column), simd.splat(column[0]));
+        for axis in 0..3 {
+            let (numbers, first) = (simd.load(&origin[axis]), simd.splat(origin[axis][0]));
             differ |= simd.gt(numbers, first) | simd.gt(first, numbers);
+            simd.store(numbers, &mut self.origin[axis]);
+            simd.store(simd.load(&rays.direction[axis]), &mut self.direction[axis]);
         }
-        Self { origin: *origin, direction: rays.direction, share_origin: differ == 0, errors }
+        self.share_origin = differ == 0;
     }
 
     /// Origins and directions, one vector per coordinate.

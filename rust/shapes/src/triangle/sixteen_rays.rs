@@ -155,7 +155,8 @@ impl EdgeRays {
         let (mut certain, mut open) = ([0u32; RAYS], [0u32; RAYS]);
         for i in 0..RAYS {
             let corners = [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]];
-            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one::<false>(fused, i, corners);
+            let o = self.origin(i);
+            (certain[i], open[i], met.t[i], met.uv[0][i], met.uv[1][i]) = self.meet_one::<false>(fused, i, o, corners);
         }
         met.met = bits(&certain) & asked;
         met.open = bits(&open) & asked;
@@ -175,22 +176,67 @@ impl EdgeRays {
         let mut met = Met::NONE;
         let mut certain = [0u32; RAYS];
         for i in 0..RAYS {
-            let (_, is_open, t, v, w) = self.meet_one::<true>(fused, i, [of(a, i), of(b, i), of(c, i)]);
-            let t = t * self.scale[i];
-            certain[i] = u32::from((is_open == 0) & (t.abs() <= f64::MAX));
-            (met.t[i], met.uv[0][i], met.uv[1][i]) = (t, v, w);
+            let corners = [of(a, i), of(b, i), of(c, i)];
+            certain[i] = self.won_one(fused, i, self.origin(i), corners, &mut met);
         }
         met.met = bits(&certain) & asked;
         met.open = asked & !met.met;
         met
     }
 
+    /// The same for a triangle that all rays in `asked` hit from one origin ([`EdgeRays::share_origin`]). Two thirds of
+    /// the work depend on these alone and are done once.
+    #[inline(always)]
+    pub fn won_together(&self, fused: bool, corners: [DVec3; 3], asked: u32) -> Met {
+        let [a, b, c] = corners;
+        let (o, corners) = (self.origin(0), [[a.x, a.y, a.z], [b.x, b.y, b.z], [c.x, c.y, c.z]]);
+        let mut met = Met::NONE;
+        let mut certain = [0u32; RAYS];
+        for i in 0..RAYS {
+            certain[i] = self.won_one(fused, i, o, corners, &mut met);
+        }
+        met.met = bits(&certain) & asked;
+        met.open = asked & !met.met;
+        met
+    }
+
+    /// Return whether all rays that were taken have the same origin, bit for bit.
+    #[inline(always)]
+    pub fn share_origin(&self) -> bool {
+        let mut differ = 0;
+        for axis in 0..3 {
+            for i in 0..RAYS {
+                differ |= self.origin[axis][i].to_bits() ^ self.origin[axis][0].to_bits();
+            }
+        }
+        differ == 0
+    }
+
+    #[inline(always)]
+    fn origin(&self, i: usize) -> [f64; 3] {
+        [self.origin[0][i], self.origin[1][i], self.origin[2][i]]
+    }
+
+    /// Store the hit of a ray; return whether it is certain.
+    #[inline(always)]
+    fn won_one(&self, fused: bool, i: usize, o: [f64; 3], corners: [[f64; 3]; 3], to: &mut Met) -> u32 {
+        let (_, is_open, t, v, w) = self.meet_one::<true>(fused, i, o, corners);
+        let t = t * self.scale[i];
+        (to.t[i], to.uv[0][i], to.uv[1][i]) = (t, v, w);
+        u32::from((is_open == 0) & (t.abs() <= f64::MAX))
+    }
+
     /// Return whether a ray certainly hits a triangle, whether that is open, `t`, and the weights of the second and the
     /// third corner. With `WON` the first is known to be true and is not used.
     #[inline(always)]
-    fn meet_one<const WON: bool>(&self, fused: bool, i: usize, corners: [[f64; 3]; 3]) -> (u32, u32, f64, f64, f64) {
+    fn meet_one<const WON: bool>(
+        &self,
+        fused: bool,
+        i: usize,
+        [ox, oy, oz]: [f64; 3],
+        corners: [[f64; 3]; 3],
+    ) -> (u32, u32, f64, f64, f64) {
         let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
-        let (ox, oy, oz) = (self.origin[0][i], self.origin[1][i], self.origin[2][i]);
         let (dx, dy, dz) = (self.direction[0][i], self.direction[1][i], self.direction[2][i]);
         let (ax, ay, az) = (ax - ox, ay - oy, az - oz);
         let (bx, by, bz) = (bx - ox, by - oy, bz - oz);
@@ -233,7 +279,7 @@ impl EdgeRays {
         let is_beyond = !WON & depth.is_beyond(self.t_min[i], self.t_max[i]);
         let is_certain = (least > above)
             & (6.0 * above * range <= EdgeRay::T_ERROR * largest * sum.abs())
-            & (depth.is_known() | is_beyond);
+            & if WON { depth.is_surely_known() } else { depth.is_known() | is_beyond };
         let counts = (t >= self.t_min[i]) & (t <= self.t_max[i]) & ((t * self.scale[i]).abs() <= f64::MAX) & !is_beyond;
         (u32::from(!passed & is_certain & counts), u32::from(!passed & !is_certain), t, v / sum, w / sum)
     }

@@ -37,11 +37,14 @@ impl Bests {
         answered: 0,
     };
 
-    /// No hits, for rays that end at their `t_max`.
+    /// Start without hits, for rays that end at their `t_max`.
     #[inline(always)]
-    pub fn none(rays: &Sixteen) -> Self {
-        let [low, high] = rays.t_max;
-        Self { low, high, ..Self::NOTHING }
+    pub fn clear<S: Lanes<RAYS>>(&mut self, simd: S, rays: &Sixteen) {
+        simd.store(simd.load(&rays.t_max[0]), &mut self.low);
+        simd.store(simd.load(&rays.t_max[1]), &mut self.high);
+        simd.store(simd.splat(f32::from_bits(Packed::NONE.bits())), &mut self.leaf);
+        simd.store(simd.splat(0.0), &mut self.lane);
+        self.answered = 0;
     }
 
     /// The closest hit of one ray.

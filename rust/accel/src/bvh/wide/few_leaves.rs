@@ -5,10 +5,10 @@ use super::bests::{Bests, are_few};
 use super::first::First;
 use super::hit_sink::Answer;
 use super::node::Packed;
-use super::refine_hits::Settling;
+use super::refine_hits::{Refining, Settling};
+use super::single;
 use super::sixteen::Sixteen;
 use super::step::Stacks;
-use super::{refine_hits, single};
 use raywright_base::math::Aabb;
 use raywright_base::simd::{Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Leaves, Met, RAYS};
@@ -39,13 +39,13 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     let batch = errand.rays;
     let sixteen = simd.sixteen();
     let mut lone = Stacks::spare::<N>(bvh.stack);
-    let mut rays = Sixteen::NONE;
+    let (mut rays, mut bests, mut refining) = (Sixteen::NONE, Bests::NOTHING, Refining::new());
     for start in (0..batch.len()).step_by(RAYS) {
         let count = RAYS.min(batch.len() - start);
         let here = ALL >> (RAYS - count);
         rays.take::<N, L, _>(sixteen, batch, start, &bvh.region, bvh.axes.as_ref());
         let plain = here & rays.plain.plain;
-        let mut bests = Bests::none(&rays);
+        bests.clear(sixteen, &rays);
         let mut limit = sixteen.load(&rays.slabs.limit);
         for &(leaf, bounds) in leaves {
             let active = plain & !bests.answered & rays.slabs.meeting(sixteen, &bounds, limit);
@@ -80,7 +80,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
         if A::ANY {
             errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
         } else {
-            refine_hits::settle(sixteen, bvh, batch, start, count, &bests, errand.answer);
+            refining.settle(sixteen, bvh, batch, start, count, &bests, errand.answer);
         }
         let mut others = here & !plain;
         while others != 0 {

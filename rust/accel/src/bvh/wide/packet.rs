@@ -17,10 +17,10 @@ use super::bests::{self, Bests};
 use super::first::First;
 use super::hit_sink::Answer;
 use super::node::{Packed, WideNode};
-use super::refine_hits::Settling;
+use super::refine_hits::{Refining, Settling};
 use super::sixteen::Sixteen;
 use super::step::Stacks;
-use super::{refine_hits, single};
+use super::{single, wave};
 use crate::slab::Clock;
 use raywright_base::simd::{ASCENDING, Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Column, Leaves, Met, RAYS};
@@ -71,15 +71,15 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
     let mut lone = Stacks::new::<N>(1, bvh.stack);
     let mut masks = vec![0; bvh.stack + 1 + N];
     let mut rays = [const { Sixteen::NONE }; SIXTEENS];
+    let (mut bests, mut refining) = ([const { Bests::NOTHING }; SIXTEENS], Refining::new());
     for start in (0..batch.len()).step_by(SIXTEENS * RAYS) {
         let count = (SIXTEENS * RAYS).min(batch.len() - start);
         let rays = &mut rays[..count.div_ceil(RAYS)];
-        let mut bests = [const { Bests::NOTHING }; SIXTEENS];
         // The rays that wait for a packet, and those of sixteens that are not all plain.
         let (mut waiting, mut others) = ([0; SIXTEENS], [0; SIXTEENS]);
         for (which, sixteen) in rays.iter_mut().enumerate() {
             sixteen.take::<N, L, _>(simd.sixteen(), batch, start + which * RAYS, &bvh.region, bvh.axes.as_ref());
-            bests[which] = Bests::none(sixteen);
+            bests[which].clear(simd.sixteen(), sixteen);
             let here = ALL >> (RAYS - RAYS.min(count - which * RAYS));
             let to = if sixteen.plain.plain == ALL { &mut waiting } else { &mut others };
             to[which] = here;
@@ -100,7 +100,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
             if A::ANY {
                 errand.answer.some(start, count, bests.answered, &Met::NONE, &[0; RAYS]);
             } else {
-                refine_hits::settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
+                refining.settle(simd.sixteen(), bvh, batch, start, count, bests, errand.answer);
             }
             while others[which] != 0 {
                 let i = others[which].trailing_zeros() as usize;
@@ -227,7 +227,11 @@ impl<'a> Packet<'a> {
                 *masks[top..].first_chunk_mut::<N>().expect("as long as the stack") = [mask; N];
                 // For occlusion, nearest first is up to a sixth slower if large triangles hide much.
                 let order = if A::ANY { ASCENDING } else { node.order(octant) };
-                top += stack.push::<true, N, S>(simd, top, nears, fars, &places, order);
+                let pushed = stack.push::<true, N, S>(simd, top, nears, fars, &places, order);
+                for at in top..top + pushed {
+                    wave::fetch(simd, bvh, Packed::of(node.children[stack.entry(at).1 as usize & (N - 1)]));
+                }
+                top += pushed;
             }
             loop {
                 if top == BOTTOM {

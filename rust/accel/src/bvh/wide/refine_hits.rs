@@ -190,15 +190,15 @@ struct Triangles<T> {
 }
 
 impl<T: Real> Triangles<T> {
-    /// The triangles of the rays in `hits`. Neighbours often hit the same one, which is loaded once.
+    /// Load the triangles of the rays in `hits`. Neighbours often hit the same one, which is loaded once.
     #[inline(always)]
-    fn of<const N: usize, L: Leaves<N, Real = T>, S: Lanes<RAYS>>(
+    fn load<const N: usize, L: Leaves<N, Real = T>, S: Lanes<RAYS>>(
+        &mut self,
         simd: S,
         leaves: &L,
         bests: &Bests,
         hits: u32,
-    ) -> Self {
-        let mut triangles = Self { corners: [[[T::default(); RAYS]; 3]; 3], primitives: [0; RAYS] };
+    ) {
         let mut rest = hits;
         while rest != 0 {
             let i = rest.trailing_zeros() as usize & (RAYS - 1);
@@ -209,7 +209,7 @@ impl<T: Real> Triangles<T> {
             let lane = best.lane as usize & (N - 1);
             let (primitive, corners) = (leaves.primitive(first, count, lane), leaves.coordinates(first, count, lane));
             let is_lone = like & like.wrapping_sub(1) == 0;
-            for (to, corner) in triangles.corners.iter_mut().zip(corners) {
+            for (to, corner) in self.corners.iter_mut().zip(corners) {
                 for (to, x) in to.iter_mut().zip(corner) {
                     if is_lone {
                         to[i] = x;
@@ -218,50 +218,77 @@ impl<T: Real> Triangles<T> {
                     }
                 }
             }
-            for (k, to) in triangles.primitives.iter_mut().enumerate() {
+            for (k, to) in self.primitives.iter_mut().enumerate() {
                 *to = if like >> k & 1 == 1 { primitive } else { *to };
             }
         }
-        triangles
     }
 }
 
-/// Compute and store the hits of up to sixteen consecutive rays from `start`.
-#[inline(always)]
-pub fn settle<const N: usize, L: Leaves<N>, A: Answer, S: Lanes<RAYS>>(
-    simd: S,
-    bvh: &WideBvh<N, L>,
-    rays: &RayBatch<'_>,
-    start: usize,
-    count: usize,
-    bests: &Bests,
-    answer: &mut A,
-) {
-    let hits = bests.hits(simd);
-    if hits == 0 {
-        answer.some(start, count, 0, &Met::NONE, &[0; RAYS]);
-        return;
+/// Buffers for the hits of sixteen rays: clearing them would take as long as filling them.
+pub struct Refining<T> {
+    edges: EdgeRays,
+    triangles: Triangles<T>,
+}
+
+impl<T: Real> Refining<T> {
+    /// For no rays.
+    pub fn new() -> Self {
+        let triangles = Triangles { corners: [[[T::default(); RAYS]; 3]; 3], primitives: [0; RAYS] };
+        Self { edges: EdgeRays::default(), triangles }
     }
-    if let Some(primitives) = answer.primitives() {
-        for (i, to) in primitives[start..][..count].iter_mut().enumerate() {
-            let best = bests.get(i);
-            *to = if hits >> i & 1 == 1 { primitive(&bvh.leaves, best.leaf, best.lane) } else { Ray::NO_TRIANGLE };
+
+    /// Compute and store the hits of up to sixteen consecutive rays from `start`.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub fn settle<const N: usize, L: Leaves<N, Real = T>, A: Answer, S: Lanes<RAYS>>(
+        &mut self,
+        simd: S,
+        bvh: &WideBvh<N, L>,
+        rays: &RayBatch<'_>,
+        start: usize,
+        count: usize,
+        bests: &Bests,
+        answer: &mut A,
+    ) {
+        let hits = bests.hits(simd);
+        if hits == 0 {
+            answer.some(start, count, 0, &Met::NONE, &[0; RAYS]);
+            return;
         }
-        return;
-    }
-    // Before the rays, so that scalar stores complete before the data are loaded as vectors.
-    let triangles = Triangles::of(simd, &bvh.leaves, bests, hits);
-    let mut edges = EdgeRays::default();
-    edges.take(rays, start);
-    let plain = edges.prepare(&bvh.region) & hits;
-    let all = edges.won(S::FUSED, &triangles.corners, plain);
-    answer.some(start, count, all.met, &all, &triangles.primitives);
-    let mut rest = hits & !all.met;
-    while rest != 0 {
-        let i = rest.trailing_zeros() as usize & (RAYS - 1);
-        rest &= rest - 1;
-        let best = bests.get(i);
-        alone(bvh, rays, start + i, best.leaf, best.lane, answer);
+        if let Some(primitives) = answer.primitives() {
+            for (i, to) in primitives[start..][..count].iter_mut().enumerate() {
+                let best = bests.get(i);
+                *to = if hits >> i & 1 == 1 { primitive(&bvh.leaves, best.leaf, best.lane) } else { Ray::NO_TRIANGLE };
+            }
+            return;
+        }
+        let Self { edges, triangles } = self;
+        edges.take(rays, start);
+        let first = hits.trailing_zeros() as usize;
+        let together = hits & !bests.like(simd, first) == 0 && edges.share_origin();
+        // Before the rays are prepared, so that scalar stores complete before the data are loaded as vectors.
+        let best = bests.get(first);
+        if together {
+            triangles.primitives = [primitive(&bvh.leaves, best.leaf, best.lane); RAYS];
+        } else {
+            triangles.load(simd, &bvh.leaves, bests, hits);
+        }
+        let plain = edges.prepare(&bvh.region) & hits;
+        let all = if together {
+            let (first, count) = best.leaf.leaf();
+            edges.won_together(S::FUSED, bvh.leaves.corners(first, count, best.lane as usize & (N - 1)), plain)
+        } else {
+            edges.won(S::FUSED, &triangles.corners, plain)
+        };
+        answer.some(start, count, all.met, &all, &triangles.primitives);
+        let mut rest = hits & !all.met;
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize & (RAYS - 1);
+            rest &= rest - 1;
+            let best = bests.get(i);
+            alone(bvh, rays, start + i, best.leaf, best.lane, answer);
+        }
     }
 }
 

@@ -54,7 +54,7 @@ impl Sixteen {
     ) {
         self.plain.take(simd, rays, from, region);
         self.slabs.prepare(simd, &self.plain, region, axes);
-        self.blocks = L::rays(simd, &self.plain, region);
+        L::take(simd, &self.plain, region, &mut self.blocks);
         let unit = simd.splat(L::unit(region) as f32);
         for (to, t) in [(&mut self.t_min, &self.plain.t_min), (&mut self.t_max, &self.plain.t_max)] {
             let (low, high) = between_all(simd, simd.mul(simd.load(t), unit));
