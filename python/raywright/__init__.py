@@ -175,5 +175,4 @@ if not TYPE_CHECKING:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{where}")
 
     def __dir__() -> list[str]:
-        # Only public names, imported or not.
-        return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})
+        return import_module(".public_names", __name__).public_names(__name__)()

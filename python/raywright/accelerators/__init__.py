@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .._core import AcceleratorInfo
+from ..public_names import public_names
 from .brute import BruteForce
 from .bvh import BVH, Builder, Optimizer, Traversal, Volume
 from .choices import Accelerator
@@ -29,3 +30,4 @@ __all__ = [
     "Traversal",
     "Volume",
 ]
+__dir__ = public_names(__name__)

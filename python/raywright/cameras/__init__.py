@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .any_camera import AnyCamera
 from .any_camera import pixel_offsets as pixel_offsets
 from .fisheye import Fisheye
@@ -20,3 +21,4 @@ __all__ = [
     "Pose",
     "ThinLens",
 ]
+__dir__ = public_names(__name__)

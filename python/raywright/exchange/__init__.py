@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .radiative import RadiativeExchange
 from .solution import RadiositySolution, RadiosityStep
 from .view_factor_matrix import ViewFactors
@@ -12,3 +13,4 @@ __all__ = [
     "RadiosityStep",
     "ViewFactors",
 ]
+__dir__ = public_names(__name__)

@@ -6,8 +6,10 @@ with a certain bound on every error, and the core decides among them, exactly.
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .device import Gpu
 from .scene_buffers import GpuScene
 from .stats import GpuStats
 
 __all__ = ["Gpu", "GpuScene", "GpuStats"]
+__dir__ = public_names(__name__)

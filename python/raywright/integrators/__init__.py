@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
+from ..public_names import public_names
 from .ambient_occlusion import AmbientOcclusion
 from .base import CoreIntegrator, Integrator
 from .beam_traced import BeamTraced
@@ -39,6 +40,7 @@ __all__ = [
     "Rng",
     "Whitted",
 ]
+__dir__ = public_names(__name__)
 
 
 def check_integrator(name: str, value: object) -> None:

@@ -7,6 +7,7 @@ from typing import cast
 
 from numpy.typing import ArrayLike
 
+from ..public_names import public_names
 from .constant import ConstantEnvironment
 from .directional import DirectionalLight
 from .emission import Emission
@@ -28,6 +29,7 @@ __all__ = [
     "SpotLight",
     "SunSky",
 ]
+__dir__ = public_names(__name__)
 
 
 def lights(value: object) -> tuple[Light, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .blinn_phong import BlinnPhong
 from .bump_map import BumpMap
 from .conductor import Conductor, MetalIndex, metal_index, metals
@@ -56,3 +57,4 @@ __all__ = [
     "metal_index",
     "metals",
 ]
+__dir__ = public_names(__name__)

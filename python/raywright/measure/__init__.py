@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .cracks import Topology, topology
 from .cuts import CrossSection, cross_section
 from .hemispheres import Estimate, ambient_visibility, sky_view
@@ -33,3 +34,4 @@ __all__ = [
     "thickness",
     "topology",
 ]
+__dir__ = public_names(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .grid import GridMedium
 from .homogeneous import Homogeneous
 from .medium import Medium
@@ -19,3 +20,4 @@ __all__ = [
     "Rayleigh",
     "SparseGrid",
 ]
+__dir__ = public_names(__name__)

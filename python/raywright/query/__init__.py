@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .all_hits import AllHits
 from .closest_points import ClosestPoints
 from .cones import ConeCoverage, ConeFaces
@@ -35,3 +36,4 @@ __all__ = [
     "TreeBoxes",
     "power_heuristic",
 ]
+__dir__ = public_names(__name__)

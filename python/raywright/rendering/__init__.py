@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .aovs import AOVS
 from .error_estimate import ErrorEstimate
 from .filters import (
@@ -40,3 +41,4 @@ __all__ = [
     "Stratified",
     "TriangleFilter",
 ]
+__dir__ = public_names(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .accelerators import AcceleratorReport, accelerators, rays_per_build
 from .contest import Measured
 from .convergence import ConvergenceReport, Fit, convergence
@@ -39,3 +40,4 @@ __all__ = [
     "tree",
     "typical_rays",
 ]
+__dir__ = public_names(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .instance import Instance
 from .plan import Plan, PlanRow
 from .scene import Scene
@@ -12,3 +13,4 @@ __all__ = [
     "PlanRow",
     "Scene",
 ]
+__dir__ = public_names(__name__)

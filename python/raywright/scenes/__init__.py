@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .ball import material_ball
 from .city import city
 from .classics import classics
@@ -45,3 +46,4 @@ __all__ = [
     "veach_plates",
     "whitted_spheres",
 ]
+__dir__ = public_names(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .box import Box
 from .cone import Cone
 from .cylinder import Cylinder
@@ -28,3 +29,4 @@ __all__ = [
     "Sphere",
     "Torus",
 ]
+__dir__ = public_names(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..public_names import public_names
 from .blackbody import Blackbody
 from .checker import Checker
 from .fbm import FBm
@@ -36,3 +37,4 @@ __all__ = [
     "Wood",
     "illuminants",
 ]
+__dir__ = public_names(__name__)

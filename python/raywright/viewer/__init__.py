@@ -10,6 +10,7 @@ from ..arrays import SeedLike, integer
 from ..cameras import AnyCamera
 from ..integrators import AnyIntegrator, Path, check_integrator
 from ..io.tone import DEFAULT, check_tone
+from ..public_names import public_names
 from ..rendering.build_image import shines
 from ..rendering.check_request import check_picture
 from ..rendering.filters import BoxFilter, Filter
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from .widget import ViewerWidget
 
 __all__ = ["Viewer", "view"]
+__dir__ = public_names(__name__)
 
 _PATH = Path()
 _FILTER: Filter = BoxFilter()

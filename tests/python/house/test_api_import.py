@@ -1,6 +1,7 @@
 """Importing the package imports numpy and its core; a name is imported when it is first used."""
 
 import ast
+import importlib
 import importlib.metadata
 import os
 import pkgutil
@@ -124,6 +125,27 @@ def test_dir_is_what_is_public(used):
     assert {name for name in told if not (name.startswith("__") and name.endswith("__"))} == set(rw.__all__)
     assert {"__all__", "__doc__", "__file__", "__name__", "__version__"} <= set(told)
     assert told == sorted(told)
+
+
+def packages():
+    """Yield the packages below the top that say which of their names are public."""
+    for found in pkgutil.walk_packages(rw.__path__, "raywright."):
+        if found.ispkg and hasattr(module := importlib.import_module(found.name), "__all__"):
+            yield pytest.param(module, id=found.name)
+
+
+@pytest.mark.parametrize("module", list(packages()))
+def test_dir_of_a_package_is_what_is_public(module):
+    told = dir(module)
+    # No modules that it imports, no helpers, no submodules.
+    assert [name for name in told if not name.startswith("__")] == sorted(module.__all__)
+    assert {"__all__", "__doc__", "__file__", "__name__"} <= set(told) <= {*vars(module), *module.__all__}
+
+
+def test_every_public_package_says_what_is_public():
+    apart = {"raywright.cli", "raywright.scene_files", "raywright.mesh_files", "raywright.io.exr"}
+    names = {found.name for found in pkgutil.walk_packages(rw.__path__, "raywright.") if found.ispkg}
+    assert {package.id for package in packages()} == names - apart
 
 
 def test_the_version_is_that_of_the_package_and_of_the_crate():

@@ -7,7 +7,9 @@ installed: arrays of numpy are taken and returned, and tensors of Open3D where t
 
 from __future__ import annotations
 
+from ...public_names import public_names
 from .installation import install, uninstall
 from .raycasting_scene import RaycastingScene
 
 __all__ = ["RaycastingScene", "install", "uninstall"]
+__dir__ = public_names(__name__)

@@ -7,7 +7,9 @@ meshes of triangles alone.
 
 from __future__ import annotations
 
+from ...public_names import public_names
 from .filters import multi_ray_trace, ray_trace, select_interior_points
 from .installation import install, uninstall
 
 __all__ = ["install", "multi_ray_trace", "ray_trace", "select_interior_points", "uninstall"]
+__dir__ = public_names(__name__)

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import trimesh
 
+from ...public_names import public_names
 from .closest import ProximityQuery, closest_point, signed_distance
 from .installation import install, uninstall
 
 __all__ = ["ProximityQuery", "closest_point", "install", "signed_distance", "uninstall"]
+__dir__ = public_names(__name__)
 
 
 def __getattr__(name: str) -> object:

@@ -7,8 +7,10 @@ counts once, however small, large or far from the origin a mesh is.
 
 from __future__ import annotations
 
+from ...public_names import public_names
 from ..switch import Installation
 from .installation import install, uninstall
 from .intersector import RayMeshIntersector
 
 __all__ = ["Installation", "RayMeshIntersector", "install", "uninstall"]
+__dir__ = public_names(__name__)

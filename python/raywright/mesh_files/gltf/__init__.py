@@ -7,12 +7,14 @@ from os import PathLike
 from pathlib import Path
 
 from ...io.quiet import refused
+from ...public_names import public_names
 from ...shapes.mesh import Mesh
 from .document import Document
 from .nodes import placed
 from .stands import meshes
 
 __all__ = ["read_meshes", "there"]
+__dir__ = public_names(__name__)
 
 
 def read_meshes(path: Path) -> tuple[Mesh, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...io.quiet import refused
+from ...public_names import public_names
 from ...shapes.mesh import Mesh
 from ..look import colored, shares_of
 from .geometry import Geometry, Part
@@ -13,6 +14,7 @@ from .notes import Notes
 from .text import text_of
 
 __all__ = ["read_obj", "read_obj_whole"]
+__dir__ = public_names(__name__)
 
 
 def read_obj(path: Path) -> tuple[Mesh, ...]:

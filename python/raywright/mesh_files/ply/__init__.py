@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ...io.quiet import refused
+from ...public_names import public_names
 from ...shapes.mesh import Mesh
 from ..elements import Data, read_bytes, read_text
 from ..tokens import plain_text, without_mark
@@ -20,6 +21,7 @@ from .header import Header, read_header
 from .looks import columns, coordinates, look_of
 
 __all__ = ["elements_of", "indices_of", "read_ply", "read_ply_whole"]
+__dir__ = public_names(__name__)
 
 
 def elements_of(path: Path) -> dict[str, Data]:

@@ -9,6 +9,7 @@ from ...io.quiet import refused
 from ...mesh_files.gltf import there
 from ...mesh_files.gltf.document import Document
 from ...mesh_files.gltf.nodes import placed
+from ...public_names import public_names
 from ...rendering.render_setup import RenderSetup
 from ...scene.instance import AnyShape, Instance
 from ...shapes.mesh import face_count
@@ -18,6 +19,7 @@ from .lights import lights
 from .shapes import shapes
 
 __all__ = ["read_gltf"]
+__dir__ = public_names(__name__)
 
 
 def read_gltf(path: str | PathLike[str], width: int | None = None, height: int | None = None) -> RenderSetup:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ...public_names import public_names
 from .scene import from_mitsuba
 
 __all__ = ["from_mitsuba"]
+__dir__ = public_names(__name__)

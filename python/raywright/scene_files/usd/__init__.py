@@ -10,6 +10,7 @@ from typing import Any, Literal
 from ...arrays import integer
 from ...cameras import AnyCamera
 from ...io.quiet import refused
+from ...public_names import public_names
 from ...rendering.render_setup import RenderSetup
 from ...scene.scene import Scene
 from ..shown import shown
@@ -21,6 +22,7 @@ from .notes import Notes, told_of
 from .reading import Reading, first_time, seen
 
 __all__ = ["read_usd"]
+__dir__ = public_names(__name__)
 
 # Prims that are neither lights nor shapes, and would change a picture.
 _LEFT_OUT = {"RenderSettings": "render settings are left out", "Skeleton": UNPOSED}
