@@ -9,7 +9,7 @@ import raywright
 PACKAGE = Path(raywright.__file__).parent
 # Rooms, folders or files of the root, from the ground up; those of one floor do not depend on each other.
 FLOORS = [
-    {"_core", "debug_log", "foreign_arrays", "html_tables"},
+    {"_core", "debug_log", "foreign_arrays", "html_tables", "public_names"},
     {"arrays", "locks"},
     {"descriptions"},
     {"accelerators", "cameras", "io"},
