@@ -5,7 +5,7 @@
 
 A frame is all that an interactive ray tracer does but show the picture. It is drawn in two ways.
 `Scene.preview` is one call. The other way is numpy between two calls: a new camera, its rays as float32
-arrays, their closest hits, the rays from there to a lamp, whether these are blocked, and grey values by
+arrays, their closest hits, the rays from there to a lamp, whether these are blocked, and gray values by
 Lambert's law. Both write to the arrays of the frame before.
 
 Before anything is timed, the preview of a frame is compared with `intersect`, `leave` and `occluded` in
@@ -30,7 +30,7 @@ import raywright as rw
 
 # In the others nothing is lit from the camera's way.
 DEFAULT = ("sphere", "torus")
-PARTS = ("rays", "closest", "towards the lamp", "blocked", "grey")
+PARTS = ("rays", "closest", "towards the lamp", "blocked", "gray")
 # The greatest t of a segment to a lamp: a little before its end.
 _END = 1 - 2.0**-45
 
@@ -44,7 +44,7 @@ class Shots:
         self.hits = self.blocked = None
         shape = (size[1], size[0])
         self.points, self.ways, self.normals = (np.empty((*shape, 3), np.float32) for _ in range(3))
-        self.t, self.squares, self.grey = (np.empty(shape, np.float32) for _ in range(3))
+        self.t, self.squares, self.gray = (np.empty(shape, np.float32) for _ in range(3))
 
         self.picture = np.empty((*shape, 3), np.uint8)
         self.light = rw.PointLight(subject.lamp, 1)
@@ -63,7 +63,7 @@ class Shots:
         return time.perf_counter() - start, time.process_time() - busy
 
     def frame(self, turn):
-        """Fill `grey` with a picture from a place on the way around, and return the seconds of each part."""
+        """Fill `gray` with a picture from a place on the way around, and return the seconds of each part."""
         marks = [time.perf_counter()]
 
         def done():
@@ -85,10 +85,10 @@ class Shots:
         self.blocked = self.scene.occluded(points, ways, t_max=1.0, threads=threads, out=self.blocked)
         done()
         np.copyto(self.normals, hits.normal, casting="same_kind")
-        np.einsum("...k,...k->...", self.normals, ways, out=self.grey)
+        np.einsum("...k,...k->...", self.normals, ways, out=self.gray)
         np.einsum("...k,...k->...", ways, ways, out=self.squares)
-        np.divide(np.abs(self.grey, out=self.grey), np.sqrt(self.squares, out=self.squares), out=self.grey)
-        self.grey[~hits.hit | self.blocked] = 0.0
+        np.divide(np.abs(self.gray, out=self.gray), np.sqrt(self.squares, out=self.squares), out=self.gray)
+        self.gray[~hits.hit | self.blocked] = 0.0
         done()
         return np.diff(marks)
 
@@ -98,7 +98,7 @@ def check(shots):
     shots.frame(0.3)
     first = shots.scene.intersect(shots.points, shots.ways, t_max=1.0)
     lit = shots.hits.hit & ~shots.blocked
-    if not np.array_equal(first.hit, shots.blocked) or not lit.any() or not (shots.grey[lit] > 0).all():
+    if not np.array_equal(first.hit, shots.blocked) or not lit.any() or not (shots.gray[lit] > 0).all():
         raise SystemExit("shadow rays and closest hits disagree, or nothing is lit")
     camera = shots.camera(0.3)
     origins, directions = camera.rays()
@@ -109,9 +109,9 @@ def check(shots):
     starts = hits.spawn_rays(ways).origins
     blocked = shots.scene.occluded(starts, lamp - starts, t_max=_END)
     cosine = np.sum(facing * ways, axis=-1) / np.linalg.norm(ways, axis=-1)
-    grey = np.where(hits.hit & ~blocked & (cosine > 0), cosine, 0.0)
+    gray = np.where(hits.hit & ~blocked & (cosine > 0), cosine, 0.0)
     (albedo,) = {shape.material.reflectance for shape in shots.scene.shapes}
-    wanted = grey[..., None] * np.array(albedo)
+    wanted = gray[..., None] * np.array(albedo)
     found = shots.scene.preview(camera, shots.light, dtype=np.float32)
     if not np.allclose(found, wanted, rtol=1e-6, atol=1e-6):
         worst = np.abs(found - wanted).max(axis=-1)

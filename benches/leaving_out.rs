@@ -52,7 +52,7 @@ fn main() {
             seconds[which].push(run(which == 1).0);
         }
     }
-    println!("Paths of a closed room of one diffuse colour a wall, on one thread.");
+    println!("Paths of a closed room of one diffuse color a wall, on one thread.");
     println!();
     println!("| kernel | thousand paths a second | time over the first |");
     println!("|---|---|---|");

@@ -5,7 +5,7 @@ from render_peers_mitsuba import by_constants
 
 import raywright as rw
 
-GREY = rw.Diffuse(0.6)
+GRAY = rw.Diffuse(0.6)
 BLACK = rw.Diffuse(0.0)
 
 
@@ -26,7 +26,7 @@ def _rectangle(axis, at, low, high, **how):
 def keyhole(width, height):
     """Return a room whose light comes from a lamp in the next room, through a hole of 12 by 12 cm."""
     walls = [
-        _rectangle(axis, at, (0, 0), ((4, 3), (3, 7), (7, 4))[axis], material=GREY)
+        _rectangle(axis, at, (0, 0), ((4, 3), (3, 7), (7, 4))[axis], material=GRAY)
         for axis, ends in enumerate(((0, 7), (0, 4), (0, 3)))
         for at in ends
     ]
@@ -36,8 +36,8 @@ def keyhole(width, height):
         ((0, 1.34), (1.94, 1.46)),
         ((2.06, 1.34), (4, 1.46)),
     ]
-    between = [_rectangle(0, 4, low, high, material=GREY) for low, high in hole]
-    # Facing up and down, a millimetre apart.
+    between = [_rectangle(0, 4, low, high, material=GRAY) for low, high in hole]
+    # Facing up and down, a millimeter apart.
     lamp = [
         _rectangle(2, at, low, high, material=BLACK, emission=6000.0)
         for at, low, high in ((2.9, (5.5, 1.6), (6.2, 2.4)), (2.899, (5.5, 2.4), (6.2, 1.6)))
@@ -48,8 +48,8 @@ def keyhole(width, height):
 
 def behind_glass(width, height):
     """Return a lamp in a ball of glass over a floor, and a block of glass that the floor is seen through."""
-    floor = _quad((-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3), material=GREY)
-    back = _quad((-3, 0, -3), (3, 0, -3), (3, 4, -3), (-3, 4, -3), material=GREY)
+    floor = _quad((-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3), material=GRAY)
+    back = _quad((-3, 0, -3), (3, 0, -3), (3, 4, -3), (-3, 4, -3), material=GRAY)
     shell = rw.Sphere((0, 2.2, 0), 0.5, material=rw.Dielectric(1.5))
     lamp = rw.Sphere((0, 2.2, 0), 0.08, material=BLACK, emission=300.0)
     block = rw.Box((-1.2, 0.01, -0.6), (1.2, 0.6, 1.2), material=rw.Dielectric(1.3))
@@ -59,7 +59,7 @@ def behind_glass(width, height):
 
 def lens(width, height):
     """Return a point light over a floor, and a ball of glass between them."""
-    floor = _quad((-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3), material=GREY)
+    floor = _quad((-3, 0, 3), (3, 0, 3), (3, 0, -3), (-3, 0, -3), material=GRAY)
     ball = rw.Sphere((0, 1.2, 0), 0.6, material=rw.Dielectric(1.5))
     camera = rw.Camera((2.2, 2.4, 3.6), (0, 0.3, 0), fov=40, width=width, height=height)
     return rw.Scene([floor, ball], lights=[rw.PointLight((0, 3.2, 0), 12.0)]), camera

@@ -3,10 +3,10 @@
     python benches/media.py [--scene NAME ...] [--side 128] [--samples 64] [--repeat 5]
 
 The scenes are told in Mitsuba's format, so that both have the same: a slab under a lamp, a cloud on a grid in
-the sun, a ball that dims each colour by its own. Both render them in turns, on all cores, raywright as it
-does by itself, Mitsuba by its ``volpath`` and, which is made for colours, its ``volpathmis``. Errors are
+the sun, a ball that dims each color by its own. Both render them in turns, on all cores, raywright as it
+does by itself, Mitsuba by its ``volpath`` and, which is made for colors, its ``volpathmis``. Errors are
 relMSE against a long picture of each one's own, and before anything is timed, both have to agree. Mitsuba's
-long picture is that of ``volpathmis``: what ``volpath`` brings of a colour that is dimmed much less than the
+long picture is that of ``volpathmis``: what ``volpath`` brings of a color that is dimmed much less than the
 others has so long a tail that the mean of a million samples lies far below its own. Mitsuba
 wants LLVM: name Debian's libLLVM in DRJIT_LIBLLVM_PATH.
 
@@ -37,7 +37,7 @@ ASIDE = rw.Sphere((0, 0, -1e4), 1e-3, material=rw.Diffuse(rw.Spectrum([360, 830]
 
 
 def rgb(*value):
-    """Return a colour."""
+    """Return a color."""
     return {"type": "rgb", "value": list(value)}
 
 
@@ -99,7 +99,7 @@ def cloud(side, folder, size=64):
     header = struct.pack("<3sBiiiii6f", b"VOL", 3, 1, size, size, size, 1, 0, 0, 0, 1, 1, 1)
     (folder / "cloud.vol").write_bytes(header + density.transpose(2, 1, 0).tobytes())
     place = placed((3, 2, 3), (-1.5, 0.4, -1.5))
-    vapour = {
+    vapor = {
         "type": "heterogeneous",
         "albedo": 0.98,
         "scale": 8.0,
@@ -116,7 +116,7 @@ def cloud(side, folder, size=64):
             "type": "cube",
             "to_world": placed((1.5, 1, 1.5), (0, 1.4, 0)),
             "bsdf": NULL,
-            "interior": vapour,
+            "interior": vapor,
         },
     }
 

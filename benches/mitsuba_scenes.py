@@ -87,7 +87,7 @@ def compared(path: Path, shot: rw.rendering.RenderSetup, given: dict[str, int], 
     mean, own = theirs.mean(axis=0), ours.mean(axis=0)
     # Mitsuba's sums in single precision err by some 1e-5.
     off = np.abs(own - mean) / (error + 1e-5 / 4 * mean + 1e-12)
-    # Spectral variants convert colours by other curves.
+    # Spectral variants convert colors by other curves.
     apart = off > 4
     if variant != "llvm_ad_rgb":
         apart &= np.abs(own - mean) > 0.02 * mean

@@ -26,10 +26,10 @@ class Subject(NamedTuple):
 def seen_from_outside(name, vertices, faces):
     """Return a mesh with camera and lamp outside of the sphere around it."""
     low, high = vertices[faces].min(axis=(0, 1)), vertices[faces].max(axis=(0, 1))
-    centre, radius = (low + high) / 2, np.linalg.norm(high - low) / 2
-    eye = centre + radius * 1.6 * np.array([0.45, 0.5, 0.74])
-    lamp = centre + radius * np.array([1.2, 2.2, 0.4])
-    return Subject(name, vertices.astype(np.float32), faces, eye, centre, lamp)
+    center, radius = (low + high) / 2, np.linalg.norm(high - low) / 2
+    eye = center + radius * 1.6 * np.array([0.45, 0.5, 0.74])
+    lamp = center + radius * np.array([1.2, 2.2, 0.4])
+    return Subject(name, vertices.astype(np.float32), faces, eye, center, lamp)
 
 
 def sphere(triangles, rng):

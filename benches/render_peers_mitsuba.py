@@ -139,5 +139,5 @@ def _material(material):
     raise TypeError(f"{material} is not told to Mitsuba")
 
 
-def _rgb(colour):
-    return {"type": "rgb", "value": [float(x) for x in colour]}
+def _rgb(color):
+    return {"type": "rgb", "value": [float(x) for x in color]}

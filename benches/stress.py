@@ -130,12 +130,12 @@ def _slivers(rng, count, ball, aspect=1e4):
 
 
 def _tiny(rng, count, ball):
-    """Return a model that measures a micrometre, in metres."""
+    """Return a model that measures a micrometer, in meters."""
     scale = 1e-6
     vertices = (ball.vertices * scale).astype(np.float32)
     origins = (rng.uniform(-2, 2, (count, 3)) * scale).astype(np.float32)
     targets = _targets(rng, vertices, ball.faces, count)
-    return "a model of a micrometre", vertices, ball.faces, origins, (targets - origins) / scale
+    return "a model of a micrometer", vertices, ball.faces, origins, (targets - origins) / scale
 
 
 def _leaving(rng, count, ball):

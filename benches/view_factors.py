@@ -3,7 +3,7 @@
     python benches/view_factors.py [--cuts 13 18 26] [--rays 16] [--peer]
 
 Each side of the box is cut into squares; ours are of two triangles each, pyViewFactor's are whole. Before
-anything is timed, the empty box must have rows that add up to one, and sides as Howell's catalogue has them.
+anything is timed, the empty box must have rows that add up to one, and sides as Howell's catalog has them.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def block():
 
 
 def validate():
-    """Check the empty box against the catalogue (C-11, C-14), and that rows add up."""
+    """Check the empty box against the catalog (C-11, C-14), and that rows add up."""
     sides = rw.view_factors(rw.Scene(room(4)), per="shape", progress=False)
     opposed = (
         2 / math.pi * (math.log(2 / math.sqrt(3)) + math.sqrt(8) * math.atan(math.sqrt(0.5)) - math.pi / 2)
@@ -142,7 +142,7 @@ def main():
     parser.add_argument("--peer", action="store_true", help="pyViewFactor too, which takes minutes")
     arguments = parser.parse_args()
     validate()
-    print("box and block are as the catalogue has them, and rows add up", flush=True)
+    print("box and block are as the catalog has them, and rows add up", flush=True)
     for cuts in arguments.cuts:
         for r in alone(cuts, arguments.rays):
             print(

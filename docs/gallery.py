@@ -163,9 +163,9 @@ def cloud():
         body = np.maximum(body, 1 - np.sqrt((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r)
     density = np.clip(6 * (body + 0.14 * waves / waves.std()), 0, 1) * np.clip(6 * (y + 0.8), 0, 1)
     bounds = [(-4, 1, -4), (4, 5, 4)]
-    vapour = rw.GridMedium(density, bounds, scattering=12.0, phase=rw.HenyeyGreenstein(0.6), at="centers")
+    vapor = rw.GridMedium(density, bounds, scattering=12.0, phase=rw.HenyeyGreenstein(0.6), at="centers")
     evening = rw.SunSky((-1, 0.13, 0.1), turbidity=2.5, sun_scale=0.08, sky_scale=0.08)
-    scene = rw.Scene(rw.Box(*bounds, material=rw.MediumInterface(vapour)), environment=evening)
+    scene = rw.Scene(rw.Box(*bounds, material=rw.MediumInterface(vapor)), environment=evening)
     camera = rw.Camera((1.5, 0, 11), (0.2, 3.1, 0), fov=26, width=1000, height=520)
     image = rw.render(scene, camera, samples=32, adaptive=True)
     image.save("cloud.jpg")
@@ -198,14 +198,14 @@ def radiosity():
     solution is 2 %.
     """
 
-    def quad(corner, a, b, grey, **how):
+    def quad(corner, a, b, gray, **how):
         corner, a, b = np.array([corner, a, b], float)
         corners = [corner, corner + a, corner + a + b, corner + b]
-        return rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=rw.Diffuse(grey), **how)
+        return rw.Mesh(corners, [(0, 1, 2), (0, 2, 3)], material=rw.Diffuse(gray), **how)
 
-    def block(low, high, grey):
+    def block(low, high, gray):
         solid = trimesh.creation.box(bounds=[low, high])
-        return rw.Mesh(solid.vertices, solid.faces, material=rw.Diffuse(grey))
+        return rw.Mesh(solid.vertices, solid.faces, material=rw.Diffuse(gray))
 
     red, blue, wood = (0.6, 0.2, 0.12), (0.2, 0.3, 0.5), (0.5, 0.32, 0.18)
     room = [

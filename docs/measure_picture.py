@@ -36,11 +36,11 @@ def main() -> None:
         scene, ground, (0, 1, 0), times=times, latitude=47.4, longitude=8.5, weights=0.25
     )
     figure, axes = plt.subplots(1, 2, figsize=(10, 4.4), dpi=100)
-    for axis, values, title, colours in (
+    for axis, values, title, colors in (
         (axes[0], sky.value, "sky view factor", "viridis"),
         (axes[1], sun.sunlit, "hours of sun", "inferno"),
     ):
-        shown = axis.imshow(np.where(built, np.nan, values), cmap=colours, extent=(0, SIDE, SIDE, 0), vmin=0)
+        shown = axis.imshow(np.where(built, np.nan, values), cmap=colors, extent=(0, SIDE, SIDE, 0), vmin=0)
         axis.set_facecolor("0.75")
         axis.set_title(title)
         figure.colorbar(shown, ax=axis)

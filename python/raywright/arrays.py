@@ -137,7 +137,7 @@ def triple(name: str, value: ArrayLike) -> Triple:
     return _finite(name, array)
 
 
-def colour(name: str, value: ArrayLike, most: float = math.inf) -> Triple:
+def color(name: str, value: ArrayLike, most: float = math.inf) -> Triple:
     """Return one number or three (red, green, blue) as three floats, each finite and in 0..most."""
     array = real_array(name, value)
     if array.shape not in ((), (3,)):

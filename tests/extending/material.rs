@@ -4,24 +4,24 @@ use raywright::scene::materials::BsdfMix;
 use raywright::scene::textures::{Needs, Value};
 use raywright::scene::{Material, ShadingPoint, SurfacePoint};
 
-/// A colour under a lacquer that mirrors an even share of the light.
+/// A color under a lacquer that mirrors an even share of the light.
 #[derive(Debug)]
 struct Lacquer {
     /// Of the light that the lacquer lets through; a constant or a texture.
-    colour: Value,
+    color: Value,
     gloss: f64,
 }
 
 impl Material for Lacquer {
     fn bsdf(&self, at: &ShadingPoint) -> BsdfMix {
-        let base = Diffuse { reflectance: self.colour.at(&at.texture) };
+        let base = Diffuse { reflectance: self.color.at(&at.texture) };
         let gloss = Mirror { reflectance: Rgb::ONE };
         BsdfMix::mixed((Rgb::splat(1.0 - self.gloss), base.into()), (Rgb::splat(self.gloss), gloss.into()))
     }
 
     // Scenes compute texture inputs at a hit only if some texture needs them.
     fn needs(&self) -> Needs {
-        self.colour.needs()
+        self.color.needs()
     }
 
     fn validate(&self) -> Result<(), String> {
@@ -32,7 +32,7 @@ impl Material for Lacquer {
 
 #[test]
 fn a_lacquer_gives_back_no_more_than_it_gets() {
-    let lacquer = |gloss| Lacquer { colour: Rgb::splat(0.5).into(), gloss };
+    let lacquer = |gloss| Lacquer { color: Rgb::splat(0.5).into(), gloss };
     assert_eq!(lacquer(0.2).validate(), Ok(()));
     assert!(lacquer(1.2).validate().is_err());
     let point = SurfacePoint {

@@ -68,7 +68,7 @@ USES = {
     "render": lambda seed: rw.render(SCENE, CAMERA, seed=seed, **ONE).rgb,
     "render_frames": frames,
     "report.accelerators": lambda seed: timed(rw.report.accelerators, seed),
-    "report.kernels": lambda seed: rw.report.kernels(10, seed=seed, repeat=1).notes[0],
+    "report.kernels": lambda seed: rw.report.kernels(10, seed=seed, repeats=1).notes[0],
     "report.rays_per_build": lambda seed: timed(rw.report.rays_per_build, seed),
     "report.typical_rays": lambda seed: rw.report.typical_rays(SCENE, CAMERA, seed)["diffuse"].directions,
     "scenes.city": lambda seed: vertices(rw.scenes.city(1, seed)),

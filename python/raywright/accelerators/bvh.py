@@ -40,7 +40,7 @@ class BVH:
           BVH construction on GPUs").
         - ``"ploc"``: from the bottom up (Meister and Bittner 2018, "Parallel locally-ordered clustering for
           bounding volume hierarchy construction").
-        - ``"midpoint"``, ``"median"``, ``"mean"``: halves along the longest axis of the centres (Kay and
+        - ``"midpoint"``, ``"median"``, ``"mean"``: halves along the longest axis of the centers (Kay and
           Kajiya 1986, "Ray tracing complex scenes").
     bins : int, optional
         Bins for each axis, 2 to 64; chosen by the scene's ``quality`` if not given. For ``"binned"`` and
@@ -143,7 +143,7 @@ class BVH:
         if self.radius is not None:
             self._keep("radius", integer("radius", self.radius, 1, 128), _RADIUS)
         if self.optimize is not None:
-            self._keep("optimize", _optimisers(self.optimize))
+            self._keep("optimize", _optimizers(self.optimize))
         choice("traversal", self.traversal, get_args(Traversal))
         if self.orders is not None:
             orders = integer("orders", self.orders, 6, 8)
@@ -163,7 +163,7 @@ class BVH:
         object.__setattr__(self, name, value)
 
 
-def _optimisers(value: object) -> tuple[str, ...]:
+def _optimizers(value: object) -> tuple[str, ...]:
     """Return one name or several as a tuple of names, each at most once."""
     names = (value,) if isinstance(value, str) else value
     if not isinstance(names, tuple | list):
@@ -171,5 +171,5 @@ def _optimisers(value: object) -> tuple[str, ...]:
     for name in names:
         choice("optimize", name, get_args(Optimizer))
     if len(set(names)) != len(names):
-        raise ValueError(f"optimize must name each optimiser at most once, got {value!r}")
+        raise ValueError(f"optimize must name each optimizer at most once, got {value!r}")
     return tuple(names)

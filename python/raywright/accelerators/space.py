@@ -26,7 +26,7 @@ class KdTree:
         - ``"sah"``: where the surface area heuristic expects the least work, among all ends of clipped
           primitives, in n log n (Wald and Havran 2006, "On building fast kd-trees for ray tracing, and on
           doing that in O(N log N)").
-        - ``"median"``: across the cell's longest axis, at the median of the primitives' centres.
+        - ``"median"``: across the cell's longest axis, at the median of the primitives' centers.
         - ``"middle"``: in the middle of the cell's longest axis.
         - ``"cycle"``: across one axis after the other, at the median (Bentley 1975, "Multidimensional
           binary search trees used for associative searching").

@@ -16,7 +16,7 @@ from .pose import Pose
 Pair = tuple[float, float]
 
 FOV_AXES = ("x", "y", "smaller", "larger", "diagonal")
-_CENTRE = (0.5, 0.5)
+_CENTER = (0.5, 0.5)
 
 
 @dataclass(frozen=True, init=False, repr=False, kw_only=True)
@@ -84,7 +84,7 @@ class AnyCamera(Pose):
 
     def rays(
         self,
-        offsets: ArrayLike = _CENTRE,
+        offsets: ArrayLike = _CENTER,
         dtype: DTypeLike = np.float64,
         lens: ArrayLike | None = None,
         time: ArrayLike | None = None,
@@ -100,7 +100,7 @@ class AnyCamera(Pose):
             Type of the arrays; rays of float32 are the fastest to read.
         lens : (2,) or (height, width, 2) array, optional
             Position on the lens, two numbers from 0 to 1, for all pixels or for each: uniform numbers give
-            points uniform over its area. Its centre if not given; ignored by cameras without a lens.
+            points uniform over its area. Its center if not given; ignored by cameras without a lens.
         time : float or (height, width) array, optional
             Time from 0, the default, as the shutter opens to 1 as it closes, for all or for each. For queries
             of a scene in motion, pass ``time=camera.scene_time(time)``.
@@ -137,7 +137,7 @@ class AnyCamera(Pose):
         if kind not in (np.float32, np.float64):
             raise ValueError(f"dtype must be float32 or float64, got {kind}")
         places = (
-            _CENTRE
+            _CENTER
             if lens is None
             else _for_pixels(self, "lens", _in_unit("lens", last_axis("lens", lens, 2)))
         )
@@ -155,7 +155,7 @@ class AnyCamera(Pose):
         Parameters
         ----------
         points : (..., 2) array
-            Points in pixels from the picture's left and from its top: the centre of the pixel in row i and
+            Points in pixels from the picture's left and from its top: the center of the pixel in row i and
             column j is at (j + 0.5, i + 0.5). Points outside of the picture have rays too.
         lens : (..., 2) array, optional
             Position on the lens, as in `rays`; leading shapes broadcast.
@@ -190,7 +190,7 @@ class AnyCamera(Pose):
         where = last_axis("points", points, 2)
         if not np.isfinite(where).all():
             raise ValueError("points must be finite")
-        places = np.array(_CENTRE) if lens is None else _in_unit("lens", last_axis("lens", lens, 2))
+        places = np.array(_CENTER) if lens is None else _in_unit("lens", last_axis("lens", lens, 2))
         times = _times(time)
         parts = {"points": where.shape[:-1], "lens": places.shape[:-1], "time": times.shape}
         try:

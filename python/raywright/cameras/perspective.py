@@ -122,7 +122,7 @@ class Camera(AnyCamera):
         width: int,
         height: int,
         *,
-        pixel_centre: float = 0.0,
+        pixel_center: float = 0.0,
         end_pose: Pose | None = None,
         shutter: ArrayLike = (0.0, 1.0),
     ) -> Camera:
@@ -136,8 +136,8 @@ class Camera(AnyCamera):
             Rotation and translation from world to camera, whose x is to the right, y down and z forward.
         width, height : int
             Size of the picture in pixels.
-        pixel_centre : float
-            Coordinates of the first pixel's centre, across and down: 0 as in OpenCV, so that the centre of
+        pixel_center : float
+            Coordinates of the first pixel's center, across and down: 0 as in OpenCV, so that the center of
             the pixel in row i and column j is at (j, i); 0.5 to count from the picture's corner, as in
             COLMAP.
         end_pose, shutter
@@ -167,7 +167,7 @@ class Camera(AnyCamera):
         [32.0, 24.0]
         """
         focal_length_px, (x, y), skew = of_camera_matrix(K)
-        shift = 0.5 - number("pixel_centre", pixel_centre)
+        shift = 0.5 - number("pixel_center", pixel_center)
         lens = {"focal_length_px": focal_length_px, "principal_point": (x + shift, y + shift), "skew": skew}
         others = {"width": width, "height": height, "end_pose": end_pose, "shutter": shutter}
         return cls._at(of_extrinsics(R, t), {**lens, **others})
@@ -215,7 +215,7 @@ class Camera(AnyCamera):
 
     @property
     def intrinsics(self) -> NDArray[np.float64]:
-        """The camera matrix K, (3, 3), with the centres of pixels at integers, as in OpenCV.
+        """The camera matrix K, (3, 3), with the centers of pixels at integers, as in OpenCV.
 
         To count from the picture's corner, add 0.5 to its K[0, 2] and K[1, 2].
         """

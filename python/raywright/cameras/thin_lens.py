@@ -44,7 +44,7 @@ class ThinLens(AnyCamera):
         Focal length of the lens, in the scene's unit, instead of `fov`: with the sensor's height, it gives
         the vertical angle of view.
     sensor_height : float
-        Height of the sensor behind the lens, in the scene's unit. The default is 24 mm in scenes in metres;
+        Height of the sensor behind the lens, in the scene's unit. The default is 24 mm in scenes in meters;
         only `f_stop` and `focal_length` need it.
     blades : int
         Number of sides of the aperture: a regular polygon with its corners at the aperture's radius, or a

@@ -43,13 +43,13 @@ def at_corners(
     normals = np.cross(b - a, c - a)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     mine, other = _pairs(group)
-    patch, neighbour = mine // 3, other // 3
-    near = np.einsum("ij,ij->i", normals[patch], normals[neighbour]) > np.cos(np.radians(_CREASE))
-    mine, neighbour = mine[near], neighbour[near]
-    weights = areas[flat][neighbour]
+    patch, neighbor = mine // 3, other // 3
+    near = np.einsum("ij,ij->i", normals[patch], normals[neighbor]) > np.cos(np.radians(_CREASE))
+    mine, neighbor = mine[near], neighbor[near]
+    weights = areas[flat][neighbor]
     whole = np.bincount(mine, weights, len(group))
     for channel in range(3):
-        sums = np.bincount(mine, weights * values[flat, channel][neighbour], len(group))
+        sums = np.bincount(mine, weights * values[flat, channel][neighbor], len(group))
         result[flat, :, channel] = (sums / whole).reshape(-1, 3)
     return result
 

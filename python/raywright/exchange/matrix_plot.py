@@ -30,7 +30,7 @@ def block_means(matrix: Any, most: int = _MOST) -> NDArray[np.float64]:
 
 
 def draw_matrix(ax: Any, matrix: Any, label: str, cmap: Any) -> None:
-    """Draw a matrix on axes, with a color bar; zeros, of pairs that do not see each other, are grey."""
+    """Draw a matrix on axes, with a color bar; zeros, of pairs that do not see each other, are gray."""
     from ..io.value_plots import draw_picture
 
     means = block_means(matrix)

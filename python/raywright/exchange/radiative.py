@@ -1,4 +1,4 @@
-"""Radiative exchange of grey surfaces: how much heat each gains or loses."""
+"""Radiative exchange of gray surfaces: how much heat each gains or loses."""
 
 from __future__ import annotations
 
@@ -246,9 +246,9 @@ def radiative_exchange(
     kelvin = _per_face("temperature", temperature, faces)
     _check("temperature", kelvin, kelvin >= 0, "at least 0")
     _check("temperature", kelvin, kelvin <= _HOTTEST, f"at most {_HOTTEST:g}")
-    grey = _per_face("emissivity", emissivity, faces)
-    _check("emissivity", grey, (grey > 0) & (grey <= 1), "above 0 and at most 1")
-    light = grey if absorptance is None else _per_face("absorptance", absorptance, faces)
+    gray = _per_face("emissivity", emissivity, faces)
+    _check("emissivity", gray, (gray > 0) & (gray <= 1), "above 0 and at most 1")
+    light = gray if absorptance is None else _per_face("absorptance", absorptance, faces)
     _check("absorptance", light, (light > 0) & (light <= 1), "above 0 and at most 1")
     sky = None
     if sky_temperature is not None:
@@ -263,11 +263,11 @@ def radiative_exchange(
     seed = seed_number(seed)
     workers = thread_limit(threads)
     check_progress(progress)
-    kelvin, grey, light = (
-        covered.with_backs(np.tile(part, 2)) if both else part for part in (kelvin, grey, light)
+    kelvin, gray, light = (
+        covered.with_backs(np.tile(part, 2)) if both else part for part in (kelvin, gray, light)
     )
     cuts = np.ones(sum(faces), np.uint32)
-    sent = grey * STEFAN_BOLTZMANN * kelvin**4
+    sent = gray * STEFAN_BOLTZMANN * kelvin**4
 
     def solve(lamps: Scene | None, emission: Floats, absorbing: Floats) -> RadiositySolution:
         looks = _three(emission), _three(1.0 - absorbing)
@@ -281,31 +281,31 @@ def radiative_exchange(
 
     coldest, doubt = 0.0, 0.0
     if method == "stochastic":
-        looks = _three(np.ones(len(grey))), _three(1.0 - grey)
+        looks = _three(np.ones(len(gray))), _three(1.0 - gray)
         problem = Problem.of(laid, cuts, both, "face", seed, workers, None, looks, covered)
         share = _lost(problem)
         if share is not None:
             coldest = STEFAN_BOLTZMANN * float(kelvin[problem.areas > 0].min(initial=_HOTTEST)) ** 4
             doubt = coldest * share
-    heat = solve(sky, np.maximum(sent - grey * coldest, 0.0), grey)
+    heat = solve(sky, np.maximum(sent - gray * coldest, 0.0), gray)
     arrives, off = heat.irradiance[:, 0] + coldest, np.hypot(heat.irradiance_error[:, 0], doubt)
     absorbed, light_off = _light(laid, covered, cuts, both, light, solve)
     leaves = heat.radiosity[:, 0] + coldest
     # A face without area loses nothing; a coincident face takes the irradiance of its partner.
     is_own = heat.areas > 0
     is_own.reshape(-1, sum(faces))[:, covered.faces] = True
-    flux = np.where(is_own, sent - grey * arrives - absorbed, 0.0)
+    flux = np.where(is_own, sent - gray * arrives - absorbed, 0.0)
     return RadiativeExchange(
         flux=flux,
         power=flux * heat.areas,
-        standard_error=np.hypot(grey * off, light_off),
+        standard_error=np.hypot(gray * off, light_off),
         radiosity=leaves.copy(),
         irradiance=arrives.copy(),
         absorbed_light=absorbed,
         areas=heat.areas.copy(),
         patches=heat.patches,
         temperature=kelvin,
-        emissivity=grey,
+        emissivity=gray,
         escaped=heat.escaped[0],
         dropped=heat.dropped,
     )

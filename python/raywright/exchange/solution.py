@@ -231,11 +231,11 @@ class RadiositySolution(Tabular):
             exposure = 1.0 / most if most > 0 else 1.0
         elif number("exposure", exposure) <= 0:
             raise ValueError(f"exposure must be greater than 0, got {exposure}")
-        colours = srgb(exposure * radiance.reshape(-1, 3), tone="linear")
+        colors = srgb(exposure * radiance.reshape(-1, 3), tone="linear")
         faces = np.arange(3 * int(rows.sum())).reshape(-1, 3)
         if side == "back":
             faces = faces[:, ::-1]
-        return trimesh.Trimesh(self.corners[rows].reshape(-1, 3), faces, vertex_colors=colours, process=False)
+        return trimesh.Trimesh(self.corners[rows].reshape(-1, 3), faces, vertex_colors=colors, process=False)
 
     def plot(
         self,
@@ -317,7 +317,7 @@ class RadiositySolution(Tabular):
         exposure: float | None = None,
         side: Literal["front", "back"] = "front",
     ) -> None:
-        """Write `to_mesh` to a file of a format that holds vertex colours: ``.ply``, ``.glb`` or ``.obj``.
+        """Write `to_mesh` to a file of a format that holds vertex colors: ``.ply``, ``.glb`` or ``.obj``.
 
         Parameters
         ----------

@@ -97,7 +97,7 @@ class ViewFactors(Tabular):
         ax : matplotlib.axes.Axes, str or path, optional
             Target: a new figure if not given, axes, or a file, .png, .svg or .pdf.
         name : {"matrix", "standard_error"}
-            Name of the array. Zeros are grey.
+            Name of the array. Zeros are gray.
         cmap : str or matplotlib.colors.Colormap
             The colors, from the least entry to the largest.
 

@@ -15,7 +15,7 @@ from .measured import made_up, reflectances
 # 80 bytes: see `Material` of shading.wgsl.
 MATERIAL = np.dtype(
     [
-        ("colour", "<f4", 3),
+        ("color", "<f4", 3),
         ("kind", "<u4"),
         ("eta", "<f4", 3),
         ("alpha", "<f4"),
@@ -44,7 +44,7 @@ def told(thing: object) -> str:
 
 
 def constant(given: Any, what: str) -> tuple[float, float, float]:
-    """Return a colour that is the same everywhere.
+    """Return a color that is the same everywhere.
 
     Raises
     ------
@@ -118,10 +118,10 @@ class Looks:
         return row
 
     def _paint(self, row: NDArray[np.void], given: Any, what: str) -> None:
-        """Give a row its colour, which may be a picture."""
-        row["colour"] = 1.0
+        """Give a row its color, which may be a picture."""
+        row["color"] = 1.0
         if not isinstance(given, ImageTexture):
-            row["colour"] = constant(given, f"the reflectance of {what}")
+            row["color"] = constant(given, f"the reflectance of {what}")
             return
         if given.filter != "bilinear":
             raise LeftError(f"the picture of {what} has the filter {given.filter!r}, not 'bilinear'")
@@ -171,10 +171,10 @@ class Looks:
 
     def _metal(self, row: NDArray[np.void], metal: Conductor, what: str) -> None:
         alpha = _alpha(metal, what)
-        row["kind"], row["colour"] = _METAL, 1.0
+        row["kind"], row["color"] = _METAL, 1.0
         if metal.metal is not None:
             # An index of 0, which no metal has, stands for a table.
-            table, row["colour"] = reflectances(metal.metal)
+            table, row["color"] = reflectances(metal.metal)
             row["table"] = self.add(table)
         else:
             row["eta"], row["k"] = constant(metal.eta, f"eta of {what}"), constant(metal.k, f"k of {what}")

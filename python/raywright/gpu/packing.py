@@ -66,7 +66,7 @@ LIT = np.dtype(
         ("sky_width", "<u4"),
         ("to_picture_z", "<f4", 3),
         ("sky_height", "<u4"),
-        ("sky_colours", "<u4"),
+        ("sky_colors", "<u4"),
         ("sky_shares", "<u4"),
         ("sky_share", "<f4"),
         ("reserved", "<u4"),
@@ -272,14 +272,14 @@ def _sky(scene: Scene, lit: NDArray[np.void], looks: Looks) -> None:
         lit[f"to_picture_{axis}"] = given.to_world[:, i]
     lit["sky"], lit["sky_kind"] = given.scale, 2
     lit["sky_width"], lit["sky_height"] = width, height
-    lit["sky_colours"], lit["sky_shares"] = looks.add(image), looks.add(_shares(image))
+    lit["sky_colors"], lit["sky_shares"] = looks.add(image), looks.add(_shares(image))
 
 
 def _shares(image: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the shares of light of rows up to each, and in each row of columns up to each, in one array."""
     height = image.shape[0]
     light = image.max(axis=2).astype(np.float64)
-    # The light within a texel is interpolated from its neighbours.
+    # The light within a texel is interpolated from its neighbors.
     beside = np.pad(np.pad(light, ((1, 1), (0, 0)), "edge"), ((0, 0), (1, 1)), "wrap")
     across = (beside[:, :-2] + 6 * beside[:, 1:-1] + beside[:, 2:]) / 8
     mean = (across[:-2] + 6 * across[1:-1] + across[2:]) / 8

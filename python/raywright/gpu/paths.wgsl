@@ -28,7 +28,7 @@ struct Job {
     // The current one of two ray lists, and the capacity of lists.
     now: u32,
     capacity: u32,
-    // Index in the numbers of the filter's quantiles: 1025, in pixels from a pixel's centre.
+    // Index in the numbers of the filter's quantiles: 1025, in pixels from a pixel's center.
     quantiles: u32,
     reserved: u32,
 }
@@ -119,7 +119,7 @@ fn taken(list: u32, place: u32) -> u32 {
     return lists[list * job.capacity + place];
 }
 
-// Offset of a filter sample from the pixel's centre, along an axis.
+// Offset of a filter sample from the pixel's center, along an axis.
 fn offset(u: f32) -> f32 {
     let place = u * 1024.0;
     let i = min(u32(place), 1023u);
@@ -241,16 +241,16 @@ fn shade(i: u32, kind: u32) {
     if path.bounce >= job.max_depth {
         return;
     }
-    let colour = colour_at(looks, at.uv);
-    if is_metal(looks) && any(looks.colour != vec3<f32>(1.0)) {
-        path.throughput *= select(vec3<f32>(1.0), looks.colour, path.gilded == 1u);
+    let color = color_at(looks, at.uv);
+    if is_metal(looks) && any(looks.color != vec3<f32>(1.0)) {
+        path.throughput *= select(vec3<f32>(1.0), looks.color, path.gilded == 1u);
         path.gilded = 1u;
     }
     if !is_single(looks) {
         let u = numbers_of(i, 2u * path.bounce + 1u);
         let arriving = from_lights(at.position, u.x, u.yz);
         if arriving.pdf != 0.0 {
-            let by = scattered_at(at, looks, colour, arriving.direction);
+            let by = scattered_at(at, looks, color, arriving.direction);
             var brings = path.throughput * by.value * arriving.radiance;
             if arriving.pdf != SINGLE {
                 brings *= beside(arriving.pdf, by.pdf) / arriving.pdf;
@@ -269,7 +269,7 @@ fn shade(i: u32, kind: u32) {
         }
     }
     let u = numbers_of(i, 2u * path.bounce + 2u);
-    let next = drawn_at(at, looks, colour, u.x, u.yz);
+    let next = drawn_at(at, looks, color, u.x, u.yz);
     path.throughput *= next.weight;
     if next.pdf == 0.0 || most(path.throughput) <= 0.0 {
         return;
@@ -348,10 +348,10 @@ fn left_out(a: vec3<f32>, b: vec3<f32>, sum: vec3<f32>) -> vec3<f32> {
     return held(a - of_a) + held(b - of_b);
 }
 
-fn is_radiance(colour: vec3<f32>) -> bool {
-    let bits = bitcast<vec3<u32>>(colour) & vec3<u32>(0x7f800000u);
+fn is_radiance(color: vec3<f32>) -> bool {
+    let bits = bitcast<vec3<u32>>(color) & vec3<u32>(0x7f800000u);
     // At most 2^60, so that squares are finite.
-    return all(bits <= vec3<u32>(0x5d800000u)) && all(colour >= vec3<f32>(0.0));
+    return all(bits <= vec3<u32>(0x5d800000u)) && all(color >= vec3<f32>(0.0));
 }
 
 // Adds up the paths of each pixel.

@@ -23,7 +23,7 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let x = pairs[id.x].x;
     let y = pairs[id.x].y;
     results[3u * id.x] = vec4<f32>(x + y, x - y, x * y, x / y);
-    // A cancelling sum: the held one is a single rounded number.
+    // A canceling sum: the held one is a single rounded number.
     results[3u * id.x + 1u] = vec4<f32>(held(x + y) - x, min(x, y), max(x, y), abs(x));
     let cross_product = cross(vec3<f32>(x, y, 1.0), vec3<f32>(y, 1.0, x));
     let order = select(0.0, 1.0, x < y) + select(0.0, 2.0, x > y);

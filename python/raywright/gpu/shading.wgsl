@@ -44,7 +44,7 @@ const PLASTIC: u32 = 6u;
 
 struct Material {
     // For metals, the factor of each reflection after the first.
-    colour: vec3<f32>,
+    color: vec3<f32>,
     kind: u32,
     // For metals, with k, or 0 if a table replaces both; for glass the first is the index below over that above.
     eta: vec3<f32>,
@@ -97,9 +97,9 @@ struct Lit {
     sky_width: u32,
     to_picture_z: vec3<f32>,
     sky_height: u32,
-    // Index of its colours among the numbers, row by row, and of the cumulative light: by row, then within each row by
+    // Index of its colors among the numbers, row by row, and of the cumulative light: by row, then within each row by
     // column.
-    sky_colours: u32,
+    sky_colors: u32,
     sky_shares: u32,
     // Probability to sample the sky.
     sky_share: f32,
@@ -141,8 +141,8 @@ fn turned(turns: f32) -> vec2<f32> {
     }
 }
 
-fn most(colour: vec3<f32>) -> f32 {
-    return max(colour.x, max(colour.y, colour.z));
+fn most(color: vec3<f32>) -> f32 {
+    return max(color.x, max(color.y, color.z));
 }
 
 // The power heuristic's weight beside another sampling density (Veach and Guibas, 1995).
@@ -260,7 +260,7 @@ fn fading(at: Surface, wi: vec3<f32>, direction: vec3<f32>) -> f32 {
     return ((1.0 - g) * g + 1.0) * g;
 }
 
-// A colour of a picture among the numbers. These are its width and height, its wrap mode (1: repeat, 2: clamp, 3:
+// A color of a picture among the numbers. These are its width and height, its wrap mode (1: repeat, 2: clamp, 3:
 // mirror, for u plus four times that for v), the two rows of the map to its coordinates, and its own rows from the top.
 fn texel(at: u32, size: vec2<i32>, wrap: vec2<u32>, x: i32, y: i32) -> vec3<f32> {
     let column = wrapped(x, size.x, wrap.x);
@@ -296,11 +296,11 @@ fn pictured(picture: u32, uv: vec2<f32>) -> vec3<f32> {
     return mix(upper, lower, within.y);
 }
 
-fn colour_at(looks: Material, uv: vec2<f32>) -> vec3<f32> {
+fn color_at(looks: Material, uv: vec2<f32>) -> vec3<f32> {
     if looks.picture == NO {
-        return looks.colour;
+        return looks.color;
     }
-    return looks.colour * pictured(looks.picture, uv);
+    return looks.color * pictured(looks.picture, uv);
 }
 
 // Reflectance of a dielectric: see fresnel::dielectric of the core.
@@ -484,13 +484,13 @@ fn coat_share(reflected: f32, base: vec3<f32>) -> f32 {
 }
 
 // Coated::base of the core.
-fn base_of(looks: Material, colour: vec3<f32>) -> vec3<f32> {
-    return colour * (1.0 - looks.k.y) / (1.0 - colour * looks.k.y);
+fn base_of(looks: Material, color: vec3<f32>) -> vec3<f32> {
+    return color * (1.0 - looks.k.y) / (1.0 - color * looks.k.y);
 }
 
 // Coated::evaluate of the core, above.
-fn plastic(looks: Material, colour: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
-    let base = base_of(looks, colour);
+fn plastic(looks: Material, color: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
+    let base = base_of(looks, color);
     let reflected = coat(looks, wo.z);
     let share = coat_share(reflected, base);
     let reaching = (1.0 - reflected) * (1.0 - coat(looks, wi.z));
@@ -515,7 +515,7 @@ fn is_single(looks: Material) -> bool {
 }
 
 // Scattering function of a material for light from `wi` to `wo`, in the frame.
-fn scattered(looks: Material, colour: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
+fn scattered(looks: Material, color: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -> Scattered {
     if looks.kind == ROUGH_GLASS {
         return rough_glass(looks, wo, wi);
     }
@@ -526,10 +526,10 @@ fn scattered(looks: Material, colour: vec3<f32>, wo: vec3<f32>, wi: vec3<f32>) -
         return rough_metal(looks, above(wo), above(wi));
     }
     if looks.kind == PLASTIC {
-        return plastic(looks, colour, above(wo), above(wi));
+        return plastic(looks, color, above(wo), above(wi));
     }
     let pdf = abs(wi.z) * INVERSE_PI;
-    return Scattered(colour * pdf, pdf);
+    return Scattered(color * pdf, pdf);
 }
 
 // A sampled direction in the frame: the scattering function times cosine over the density, and the density; 0 if none.
@@ -609,10 +609,10 @@ fn drawn_rough_metal(looks: Material, wo: vec3<f32>, choice: f32, u: vec2<f32>) 
     return Drawn(wi, by.pdf, by.value / by.pdf, 1.0);
 }
 
-fn drawn_plastic(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
+fn drawn_plastic(looks: Material, color: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     let up = above(wo);
     let reflected = coat(looks, up.z);
-    let share = coat_share(reflected, base_of(looks, colour));
+    let share = coat_share(reflected, base_of(looks, color));
     var wi = by_cosine(u);
     if choice < share {
         if looks.alpha == 0.0 {
@@ -625,7 +625,7 @@ fn drawn_plastic(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32,
         return NOTHING;
     }
     wi = normalize(wi);
-    let by = plastic(looks, colour, up, wi);
+    let by = plastic(looks, color, up, wi);
     if !(by.pdf > 0.0) {
         return NOTHING;
     }
@@ -634,7 +634,7 @@ fn drawn_plastic(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32,
 }
 
 // Samples the direction of light that a material scatters to `wo`.
-fn drawn(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
+fn drawn(looks: Material, color: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
     if wo.z == 0.0 {
         return NOTHING;
     }
@@ -643,21 +643,21 @@ fn drawn(looks: Material, colour: vec3<f32>, wo: vec3<f32>, choice: f32, u: vec2
             var wi = by_cosine(u);
             let pdf = wi.z * INVERSE_PI;
             wi.z = select(-wi.z, wi.z, wo.z > 0.0);
-            return Drawn(wi, pdf, colour, 1.0);
+            return Drawn(wi, pdf, color, 1.0);
         }
-        case MIRROR: { return Drawn(vec3<f32>(-wo.xy, wo.z), SINGLE, colour, 1.0); }
+        case MIRROR: { return Drawn(vec3<f32>(-wo.xy, wo.z), SINGLE, color, 1.0); }
         case GLASS: { return drawn_glass(looks, wo, choice); }
         case METAL: { return Drawn(vec3<f32>(-wo.xy, wo.z), SINGLE, reflectance(looks, abs(wo.z)), 1.0); }
         case ROUGH_METAL: { return drawn_rough_metal(looks, wo, choice, u); }
         case ROUGH_GLASS: { return drawn_rough_glass(looks, wo, choice, u); }
-        case PLASTIC: { return drawn_plastic(looks, colour, wo, choice, u); }
+        case PLASTIC: { return drawn_plastic(looks, color, wo, choice, u); }
         default: { return NOTHING; }
     }
 }
 
 // Samples a direction at a surface, in the world, with the factor of shading normals.
-fn drawn_at(at: Surface, looks: Material, colour: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
-    var next = drawn(looks, colour, at.wo, choice, u);
+fn drawn_at(at: Surface, looks: Material, color: vec3<f32>, choice: f32, u: vec2<f32>) -> Drawn {
+    var next = drawn(looks, color, at.wo, choice, u);
     if next.pdf == 0.0 {
         return NOTHING;
     }
@@ -672,20 +672,20 @@ fn drawn_at(at: Surface, looks: Material, colour: vec3<f32>, choice: f32, u: vec
 }
 
 // Scattering by a surface of light from a world direction back along the ray.
-fn scattered_at(at: Surface, looks: Material, colour: vec3<f32>, direction: vec3<f32>) -> Scattered {
+fn scattered_at(at: Surface, looks: Material, color: vec3<f32>, direction: vec3<f32>) -> Scattered {
     let wi = to_local(at, direction);
     let counts = fading(at, wi, direction);
     if counts <= 0.0 {
         return Scattered(vec3<f32>(0.0), 0.0);
     }
-    let by = scattered(looks, colour, at.wo, wi);
+    let by = scattered(looks, color, at.wo, wi);
     return Scattered(by.value * counts, by.pdf);
 }
 
 // The sky.
 
 fn sky_texel(column: u32, row: u32) -> vec3<f32> {
-    let first = lit.sky_colours + 3u * (row * lit.sky_width + column);
+    let first = lit.sky_colors + 3u * (row * lit.sky_width + column);
     return vec3<f32>(number(first), number(first + 1u), number(first + 2u));
 }
 

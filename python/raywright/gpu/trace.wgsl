@@ -4,7 +4,7 @@
 // one. Any other triangle is a candidate, and the core decides about it in exact arithmetic. So every error needs a
 // bound that holds on any device with WGSL's guarantees:
 //
-// - of + - *, either of the two neighbours of the true result: one ulp, at most U = 2^-23 of it; of a division 2.5;
+// - of + - *, either of the two neighbors of the true result: one ulp, at most U = 2^-23 of it; of a division 2.5;
 // - numbers smaller than 2^-126 may be 0, before an operation and after it;
 // - sums and products of one expression may be taken in any other order, and fused;
 // - no infinity and no NaN: there is none, as no number exceeds 2^103.

@@ -80,7 +80,7 @@ class Wavefront:
     max_depth, roulette_depth, seed : int
         As `Path` and `render` have them; None for no greatest depth.
     quantiles : (1025,) array
-        Of how far from a pixel's centre its samples lie along either axis, in pixels.
+        Of how far from a pixel's center its samples lie along either axis, in pixels.
     most : int
         Bytes that a binding holds.
     known : dict

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, positive
+from ..arrays import Triple, color, positive
 from . import counts
 from .base import CoreIntegrator
 
@@ -74,7 +74,7 @@ class BeamTraced(CoreIntegrator):
 
     def __init__(self, max_depth: int = 8, ambient: ArrayLike = 0.0, tolerance: float = 0.25) -> None:
         object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
-        object.__setattr__(self, "ambient", colour("ambient", ambient))
+        object.__setattr__(self, "ambient", color("ambient", ambient))
         object.__setattr__(
             self, "tolerance", np.inf if tolerance == np.inf else positive("tolerance", tolerance)
         )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, number
+from ..arrays import Triple, color, number
 from . import counts
 from .base import CoreIntegrator
 
@@ -69,4 +69,4 @@ class ConeTraced(CoreIntegrator):
             raise ValueError(f"contribution must be at least 0 and below 1, got {contribution!r}")
         object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
         object.__setattr__(self, "contribution", share)
-        object.__setattr__(self, "ambient", colour("ambient", ambient))
+        object.__setattr__(self, "ambient", color("ambient", ambient))

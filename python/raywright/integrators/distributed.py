@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour
+from ..arrays import Triple, color
 from . import counts
 from .base import CoreIntegrator
 
@@ -56,4 +56,4 @@ class Distributed(CoreIntegrator):
     def __init__(self, max_depth: int = 8, splits: int = 4, ambient: ArrayLike = 0.0) -> None:
         object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
         object.__setattr__(self, "splits", counts.samples("splits", splits))
-        object.__setattr__(self, "ambient", colour("ambient", ambient))
+        object.__setattr__(self, "ambient", color("ambient", ambient))

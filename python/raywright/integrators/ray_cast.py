@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour
+from ..arrays import Triple, color
 from . import counts
 from .base import CoreIntegrator
 
@@ -55,6 +55,6 @@ class RayCast(CoreIntegrator):
     def __init__(self, ambient: ArrayLike = 0.0, shadows: bool = True, light_samples: int = 1) -> None:
         if not isinstance(shadows, bool):
             raise TypeError(f"shadows must be True or False, got {shadows!r}")
-        object.__setattr__(self, "ambient", colour("ambient", ambient))
+        object.__setattr__(self, "ambient", color("ambient", ambient))
         object.__setattr__(self, "shadows", shadows)
         object.__setattr__(self, "light_samples", counts.samples("light_samples", light_samples))

@@ -123,7 +123,7 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
             # Imported here, because only EXR files need it (import time).
             from .exr.reader import read_exr
 
-            array = read_exr(path, _colours)
+            array = read_exr(path, _colors)
         else:
             array = decode(path)
     except (ImportError, MemoryError):
@@ -169,7 +169,7 @@ def decode(source: Path | bytes, formats: tuple[str, ...] | None = None) -> NDAr
 def pixels_of(picture: Any) -> NDArray[Any]:
     """Return a picture of Pillow's as an (H, W, C) array: uint8, of 16 bits uint16, of floats float32.
 
-    Integers of 32 bits become 16, as shares of the most that they hold. A grey or a color that the picture
+    Integers of 32 bits become 16, as shares of the most that they hold. A gray or a color that the picture
     says is transparent becomes alpha.
 
     Raises
@@ -201,7 +201,7 @@ def pixels_of(picture: Any) -> NDArray[Any]:
 
 
 def _transparent(picture: Any) -> tuple[int, ...] | None:
-    """Return the levels of the one grey or color of a picture that is transparent, as pixels have them."""
+    """Return the levels of the one gray or color of a picture that is transparent, as pixels have them."""
     told = picture.info.get("transparency")
     if picture.mode not in ("1", "L", "I", "I;16", "I;16B", "RGB") or not isinstance(told, int | tuple):
         return None
@@ -242,7 +242,7 @@ def _first(told: Any) -> Any:
     return told[0] if isinstance(told, tuple) and told else told
 
 
-def _colours(names: list[str]) -> list[str]:
+def _colors(names: list[str]) -> list[str]:
     """Return the channels of an EXR file that are its picture, of all that it has."""
     if "R" in names:
         wanted = ["R", "G", "B"]
@@ -262,11 +262,11 @@ def read_linear(path: str | PathLike[str]) -> NDArray[np.floating[Any]]:
     array = read(path)
     if Path(path).suffix.lower() == ".npy":
         return array[..., 0] if array.shape[-1] == 1 else array
-    colours = array[..., : 1 if array.shape[-1] < 3 else 3]
-    if colours.dtype.kind == "u":
-        coded = colours / np.iinfo(colours.dtype).max
-        colours = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
-    return np.broadcast_to(colours, (*colours.shape[:2], 3)).astype(np.float32)
+    colors = array[..., : 1 if array.shape[-1] < 3 else 3]
+    if colors.dtype.kind == "u":
+        coded = colors / np.iinfo(colors.dtype).max
+        colors = np.where(coded <= 0.04045, coded / 12.92, ((coded + 0.055) / 1.055) ** 2.4)
+    return np.broadcast_to(colors, (*colors.shape[:2], 3)).astype(np.float32)
 
 
 _TOO_MANY = "it has more than {} points by its header, which is PIL.Image.MAX_IMAGE_PIXELS"

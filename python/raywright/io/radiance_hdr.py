@@ -13,15 +13,15 @@ _SIZE = re.compile(rb"([+-][XY])[ \t]+([0-9]+)[ \t]+([+-][XY])[ \t]+([0-9]+)[ \t
 
 
 def read_hdr(path: Path) -> NDArray[np.float32]:
-    """Return the linear colours of an .hdr file, (H, W, 3) from the top row on (Ward, "Real Pixels", 1991).
+    """Return the linear colors of an .hdr file, (H, W, 3) from the top row on (Ward, "Real Pixels", 1991).
 
-    Colours are radiances: they are divided by the product of all lines EXPOSURE of the header, and of all
+    Colors are radiances: they are divided by the product of all lines EXPOSURE of the header, and of all
     lines COLORCORR.
 
     Raises
     ------
     ValueError
-        If it is no such file, is cut short, or has colours other than red, green and blue.
+        If it is no such file, is cut short, or has colors other than red, green and blue.
     """
     data = path.read_bytes()
     header = re.match(rb".*?\n[ \t\r]*\n", data[: 2**16], re.DOTALL)
@@ -38,10 +38,10 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
     except (ValueError, IndexError):
         raise ValueError("it is cut short, or not a Radiance picture") from None
     exponent = rgbe[..., 3:].astype(np.int32) - 136
-    colours = np.ldexp(rgbe[..., :3].astype(np.float32), exponent)
-    colours = np.where(rgbe[..., 3:] > 0, colours, np.float32(0)).astype(np.float32)
+    colors = np.ldexp(rgbe[..., :3].astype(np.float32), exponent)
+    colors = np.where(rgbe[..., 3:] > 0, colors, np.float32(0)).astype(np.float32)
     with np.errstate(over="ignore"):
-        exposed = (colours / _exposure(header[0])).astype(np.float32)
+        exposed = (colors / _exposure(header[0])).astype(np.float32)
     return _upright(exposed, size[1], size[3])
 
 

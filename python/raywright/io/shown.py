@@ -12,7 +12,7 @@ from .tone import DEFAULT, toned
 
 # Pillow's format name for each file name extension.
 FORMATS = {".png": "PNG", ".jpg": "JPEG", ".jpeg": "JPEG", ".webp": "WEBP", ".avif": "AVIF"}
-# Almost visually lossless, and without chroma subsampling, which would bleed colours over neighbours.
+# Almost visually lossless, and without chroma subsampling, which would bleed colors over neighbors.
 _HOW: dict[str, dict[str, Any]] = {
     "PNG": {},
     "JPEG": {"quality": 92, "subsampling": 0},
@@ -39,7 +39,7 @@ def srgb(
     exposure: float = 0.0,
     tone: str = DEFAULT,
 ) -> NDArray[np.uint8]:
-    """Linear colours to 8 bits, with a tone (see `toned`) and the sRGB transfer (IEC 61966-2-1).
+    """Linear colors to 8 bits, with a tone (see `toned`) and the sRGB transfer (IEC 61966-2-1).
 
     With `alpha`, (H, W), colors are premultiplied, and the result is (H, W, 4), not premultiplied: tones
     apply to the whole color of the covering surface, not to its share of the pixel.
@@ -63,7 +63,7 @@ def encoded(pixels: NDArray[np.uint8], suffix: str) -> bytes:
 
 
 def png(rgb: NDArray[np.floating[Any]], alpha: NDArray[np.floating[Any]] | None = None) -> bytes:
-    """Return a PNG file of linear colours, with the tone that all pictures have."""
+    """Return a PNG file of linear colors, with the tone that all pictures have."""
     return encoded(srgb(rgb, alpha), ".png")
 
 

@@ -13,9 +13,9 @@ TONES = ("filmic", "linear")
 # Default tone curve of all viewers.
 DEFAULT = "filmic"
 
-# Colours up to here are unchanged.
+# Colors up to here are unchanged.
 _KNEE = 0.5
-# Rate at which bright colours turn white, from the Khronos PBR Neutral tone mapper.
+# Rate at which bright colors turn white, from the Khronos PBR Neutral tone mapper.
 _DESATURATION = 0.15
 # Largest finite float32.
 _BRIGHTEST = float(np.finfo(np.float32).max)
@@ -42,12 +42,12 @@ def check_tone(exposure: float, tone: str) -> float:
 
 
 def toned(rgb: NDArray[np.floating[Any]], exposure: float, tone: str) -> NDArray[np.float64]:
-    """Return linear colours between 0 and 1: exposed by so many stops, then brought into range.
+    """Return linear colors between 0 and 1: exposed by so many stops, then brought into range.
 
     ``"linear"`` clips. ``"filmic"`` keeps colors up to half of white unchanged, and compresses brighter ones:
     the largest channel by the shoulder of the Khronos PBR Neutral tone mapper (Khronos Group, 2024), and the
     others with it, so that hues stay; far brighter colors fade to white, as on film. Its toe, which would
-    darken mid-greys by more than a fifth, is left out, and its shoulder begins at 0.5 rather than at 0.76, so
+    darken mid-grays by more than a fifth, is left out, and its shoulder begins at 0.5 rather than at 0.76, so
     that skies and lamps keep their shapes.
     """
     light = np.nan_to_num(np.asarray(rgb, np.float64), nan=0.0, posinf=_BRIGHTEST)

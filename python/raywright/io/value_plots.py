@@ -17,7 +17,7 @@ _LARGEST, _SMALLEST = 30.0, 1.0
 
 
 def scale(values: NDArray[Any], cmap: Any = COLORS) -> Any:
-    """Return the color map of values: from the least finite one to the largest; NaN is grey."""
+    """Return the color map of values: from the least finite one to the largest; NaN is gray."""
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Colormap, Normalize
@@ -41,7 +41,7 @@ def bar(ax: Any, mapped: Any, label: str) -> None:
 
 
 def draw_faces(ax: Any, corners: NDArray[np.float64], mapped: Any = None, up: Axis = "y") -> None:
-    """Draw triangles, (F, 3, 3), each in the color of its value, or all in grey; shaded by their normals."""
+    """Draw triangles, (F, 3, 3), each in the color of its value, or all in gray; shaded by their normals."""
     from matplotlib.colors import LightSource
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple
-from ..textures.spectrum import Spectrum, colour_or_spectrum
+from ..textures.spectrum import Spectrum, color_or_spectrum
 from .light import Environment
 
 
@@ -43,4 +43,4 @@ class ConstantEnvironment(Environment):
     radiance: Triple | Spectrum
 
     def __init__(self, radiance: ArrayLike | Spectrum = 1.0) -> None:
-        object.__setattr__(self, "radiance", colour_or_spectrum("radiance", radiance))
+        object.__setattr__(self, "radiance", color_or_spectrum("radiance", radiance))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, triple
-from ..textures.spectrum import Spectrum, colour_or_spectrum
+from ..textures.spectrum import Spectrum, color_or_spectrum
 from .light import Light
 
 
@@ -51,4 +51,4 @@ class DirectionalLight(Light):
         if way == (0, 0, 0):
             raise ValueError(f"direction must not be zero, got {way}")
         object.__setattr__(self, "direction", way)
-        object.__setattr__(self, "irradiance", colour_or_spectrum("irradiance", irradiance))
+        object.__setattr__(self, "irradiance", color_or_spectrum("irradiance", irradiance))

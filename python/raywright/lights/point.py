@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, triple
-from ..textures.spectrum import Spectrum, colour_or_spectrum
+from ..textures.spectrum import Spectrum, color_or_spectrum
 from .light import Light
 
 
@@ -47,4 +47,4 @@ class PointLight(Light):
 
     def __init__(self, position: ArrayLike, intensity: ArrayLike | Spectrum) -> None:
         object.__setattr__(self, "position", triple("position", position))
-        object.__setattr__(self, "intensity", colour_or_spectrum("intensity", intensity))
+        object.__setattr__(self, "intensity", color_or_spectrum("intensity", intensity))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, number, triple
-from ..textures.spectrum import Spectrum, colour_or_spectrum
+from ..textures.spectrum import Spectrum, color_or_spectrum
 from .light import Light
 from .pictured import Pictured, Texels, texels
 
@@ -24,7 +24,7 @@ class ProjectorLight(Pictured, Light):
     Parameters
     ----------
     image : (H, W, 3) or (H, W) array, or path
-        Linear colours from the top row on, at least 0, kept as read-only float32; or a path, as for
+        Linear colors from the top row on, at least 0, kept as read-only float32; or a path, as for
         `EnvironmentMap`.
     position : 3 floats
         Position, in the scene's unit of length.
@@ -84,7 +84,7 @@ class ProjectorLight(Pictured, Light):
             "target": triple("target", target),
             "up": triple("up", up),
             "fov": number("fov", fov),
-            "intensity": colour_or_spectrum("intensity", intensity),
+            "intensity": color_or_spectrum("intensity", intensity),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)

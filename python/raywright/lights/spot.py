@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias, get_args
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple, choice, number, triple
-from ..textures.spectrum import Spectrum, colour_or_spectrum
+from ..textures.spectrum import Spectrum, color_or_spectrum
 from .light import Light
 
 Profile: TypeAlias = Literal["smooth", "linear"]
@@ -75,7 +75,7 @@ class SpotLight(Light):
         values = {
             "position": triple("position", position),
             "target": triple("target", target),
-            "intensity": colour_or_spectrum("intensity", intensity),
+            "intensity": color_or_spectrum("intensity", intensity),
             "angle": number("angle", angle),
             "falloff": number("falloff", falloff),
             "profile": profile,

@@ -16,7 +16,7 @@ _EPOCH = datetime(2000, 1, 1, 12, tzinfo=timezone.utc)
 def sun_positions(
     times: Sequence[datetime], latitude: float, longitude: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return azimuth, from the north over the east, and elevation of the sun's centre, both (N,) in radians.
+    """Return azimuth, from the north over the east, and elevation of the sun's center, both (N,) in radians.
 
     By the low-precision formulas of the Astronomical Almanac, to 0.01° from 1950 to 2050 (Michalsky, "The
     Astronomical Almanac's Algorithm for Approximate Solar Position", 1988). Air, which lifts the sun by half

@@ -9,7 +9,7 @@ from typing import overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, colour, number
+from ..arrays import Triple, color, number
 from .light import Environment
 from .sun_position import sun_directions, way
 from .times import Time, Times, one_or_many
@@ -78,7 +78,7 @@ class SunSky(Environment):
         values = {
             "sun": way("sun", sun),
             "turbidity": number("turbidity", turbidity),
-            "ground_albedo": colour("ground_albedo", ground_albedo, most=1.0),
+            "ground_albedo": color("ground_albedo", ground_albedo, most=1.0),
             "up": way("up", up),
             "sun_scale": number("sun_scale", sun_scale),
             "sky_scale": number("sky_scale", sky_scale),

@@ -14,7 +14,7 @@ from .material import Material, shares
 class BlinnPhong(Material):
     """A matt surface with highlights around the half vector of light and viewer.
 
-    Blinn's model (1977), normalised so that `specular` is the share reflected at normal incidence. Both sides
+    Blinn's model (1977), normalized so that `specular` is the share reflected at normal incidence. Both sides
     reflect.
 
     Parameters

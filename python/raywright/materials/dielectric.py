@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import colour, integer, positive
+from ..arrays import color, integer, positive
 from ..media.homogeneous import Homogeneous
 from ..media.medium import Medium
 from ..media.medium import medium as checked
@@ -123,7 +123,7 @@ def _tint(transmittance: ArrayLike | Spectrum, distance: float | None) -> Homoge
     length = positive("distance", 1.0 if distance is None else distance)
     if isinstance(transmittance, Spectrum):
         return _tint_by_wavelength(transmittance, length)
-    left = colour("transmittance", transmittance, most=1.0)
+    left = color("transmittance", transmittance, most=1.0)
     if min(left) == 0:
         raise ValueError(
             f"transmittance must be above 0, got {transmittance!r}: no finite distance absorbs all light"

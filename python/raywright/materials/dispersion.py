@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import number, positive, real_array
 
-# Fraunhofer's lines F, d and C, micrometres; glass catalogues state dispersion by them.
+# Fraunhofer's lines F, d and C, micrometers; glass catalogs state dispersion by them.
 BLUE, YELLOW, RED = 0.4861327, 0.5875618, 0.6562725
 
 
@@ -60,18 +60,18 @@ class Dispersion(ABC):
         >>> round(bk7.index(), 4), bk7.index([0.4861, 0.6563]).round(4).tolist()
         (1.5168, [1.5224, 1.5143])
         """
-        wavelengths = real_array("micrometres", micrometers).astype(np.float64)
+        wavelengths = real_array("micrometers", micrometers).astype(np.float64)
         bad = ~(np.isfinite(wavelengths) & (wavelengths > 0))
         if bad.any():
             raise ValueError(
-                f"micrometres must be finite and greater than 0, got {wavelengths[bad].ravel()[0]}"
+                f"micrometers must be finite and greater than 0, got {wavelengths[bad].ravel()[0]}"
             )
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             found = self._index(wavelengths**2)
         bad = ~(np.isfinite(found) & (found > 0))
         if bad.any():
             wrong = wavelengths[bad].ravel()[0]
-            raise ValueError(f"micrometres must be in the range of the formula: it has no index at {wrong}")
+            raise ValueError(f"micrometers must be in the range of the formula: it has no index at {wrong}")
         return found if found.ndim else float(found)
 
     @property
@@ -99,7 +99,7 @@ class Cauchy(Dispersion):
     B : float
         The index of the longest waves, above 0.
     C : float
-        Dispersion, in square micrometres: 0.0042 for the glass BK7. Beware of tables in nm².
+        Dispersion, in square micrometers: 0.0042 for the glass BK7. Beware of tables in nm².
 
     Raises
     ------
@@ -133,9 +133,9 @@ class Cauchy(Dispersion):
         Parameters
         ----------
         nd : float
-            The index at 0.5875618 micrometres, above 0.
+            The index at 0.5875618 micrometers, above 0.
         Vd : float
-            Abbe's number, (n_d - 1) / (n_F - n_C), above 0: as in catalogues of glass.
+            Abbe's number, (n_d - 1) / (n_F - n_C), above 0: as in catalogs of glass.
 
         Returns
         -------
@@ -175,7 +175,7 @@ class Sellmeier(Dispersion):
     B : sequence of float
         Strengths of the resonances, three for most glass.
     C : sequence of float
-        The squares of their wavelengths, square micrometres, at least 0.
+        The squares of their wavelengths, square micrometers, at least 0.
 
     Raises
     ------

@@ -201,7 +201,7 @@ class PrincipledThin(Material):
         given = locals()
         self._set(
             base_color=value("base_color", base_color, most=1.0),
-            ior=one_index(ior, "a sheet sends all colours straight on"),
+            ior=one_index(ior, "a sheet sends all colors straight on"),
             energy_conserving=_flag(energy_conserving),
             **{name: scalar(name, given[name], most=1.0) for name in (*_SHARES, "diffuse_transmission")},
         )

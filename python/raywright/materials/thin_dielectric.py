@@ -56,7 +56,7 @@ class ThinDielectric(Material):
         priority: int = 0,
     ) -> None:
         self._set(
-            ior=one_index(ior, "a pane sends all colours straight on"),
+            ior=one_index(ior, "a pane sends all colors straight on"),
             interior=checked("interior", interior),
             priority=integer("priority", priority, -(2**31), 2**31 - 1),
         )

@@ -1,4 +1,4 @@
-"""Films of the colours of their thickness."""
+"""Films of the colors of their thickness."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class _Film(Material):
     ior: float
 
     def reflectance(self, wavelength: ArrayLike, degrees: ArrayLike = 0.0, *, outside: float = 1.0) -> Any:
-        """Return the share of unpolarised light that the film reflects at one wavelength.
+        """Return the share of unpolarized light that the film reflects at one wavelength.
 
-        It is Airy's sum over all reflections within the film, of both polarisations, without tables. The rest
+        It is Airy's sum over all reflections within the film, of both polarizations, without tables. The rest
         goes through, or into the metal. For a rough base it is the share of each facet.
 
         Parameters
@@ -90,7 +90,7 @@ class ThinFilm(_Film):
     """A thin film on glass, water or metal, with interference colors: oil on water, a coated lens, oxide.
 
     Light from both faces of the film interferes: Airy's sum over all reflections within it, of both
-    polarisations, integrated over the wavelengths of daylight (CIE D65) as the standard observer sees them
+    polarizations, integrated over the wavelengths of daylight (CIE D65) as the standard observer sees them
     (CIE 1931), in linear Rec. 709, at each angle. Incident light is unpolarized. The film absorbs nothing:
     other light is transmitted, or enters the metal. At a thickness of 0 the base is bare.
 
@@ -113,7 +113,7 @@ class ThinFilm(_Film):
     Parameters
     ----------
     thickness : float or Texture
-        Thickness in nanometres, not negative. For textures with colors, it is the mean of the channels.
+        Thickness in nanometers, not negative. For textures with colors, it is the mean of the channels.
     ior : float
         The index of refraction within the film, above 0: 1.33 for water, 1.38 for magnesium fluoride, 1.47
         for oil, 2.5 for the oxide of titanium.
@@ -153,7 +153,7 @@ class ThinFilm(_Film):
             raise TypeError(f"base must be a Dielectric or a Conductor, got {type(base).__name__}")
         self._set(
             thickness=scalar("thickness", thickness),
-            ior=one_index(ior, "films have the same for all colours"),
+            ior=one_index(ior, "films have the same for all colors"),
             base=base,
         )
 
@@ -178,14 +178,14 @@ class ThinFilm(_Film):
 class SoapFilm(_Film):
     """The skin of a soap bubble: a thin film with air on both sides, which shows interference colors.
 
-    Light passes straight through it, as through a `ThinDielectric`, and it encloses no medium. Its colours
+    Light passes straight through it, as through a `ThinDielectric`, and it encloses no medium. Its colors
     are those of a `ThinFilm`: black where it is much thinner than a wave, then white, yellow, magenta, blue
     and green in turn, paler the thicker it is. A film too thick for colors is a `ThinDielectric`.
 
     Parameters
     ----------
     thickness : float or Texture
-        Thickness in nanometres, not negative. For textures with colors, it is the mean of the channels.
+        Thickness in nanometers, not negative. For textures with colors, it is the mean of the channels.
     ior : float
         The index of refraction within the film, above 0.
 
@@ -221,7 +221,7 @@ class SoapFilm(_Film):
     ) -> None:
         self._set(
             thickness=scalar("thickness", thickness),
-            ior=one_index(ior, "films have the same for all colours"),
+            ior=one_index(ior, "films have the same for all colors"),
         )
 
     def _base_index(self, nm: NDArray[np.float64], outside: float) -> NDArray[np.complex128]:

@@ -1,4 +1,4 @@
-"""Glass with a colour at its surface."""
+"""Glass with a color at its surface."""
 
 from __future__ import annotations
 

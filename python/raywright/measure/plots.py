@@ -36,9 +36,9 @@ def plot(
         Meshes to draw, including static copies.
     values : (...) array of real numbers or bool
         A value for each point; without points, for each face or each vertex of all meshes in order. NaN is
-        drawn in grey, and infinity in the color of the nearest end.
+        drawn in gray, and infinity in the color of the nearest end.
     points : Hits, ClosestPoints or (..., 3) array, optional
-        Places of the values. The meshes are grey below them, unless the points are their vertices.
+        Places of the values. The meshes are gray below them, unless the points are their vertices.
     ax : matplotlib.axes.Axes, str or path, optional
         Target: a new figure if not given, axes with three dimensions, or a file, .png, .svg or .pdf.
     label : str

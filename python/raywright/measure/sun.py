@@ -94,7 +94,7 @@ def sun_directions(
     Returns
     -------
     (T, 3) or (3,) float64
-        Unit directions to the sun's centre, to 0.01° from 1950 to 2050; below the horizon at night.
+        Unit directions to the sun's center, to 0.01° from 1950 to 2050; below the horizon at night.
 
     Raises
     ------

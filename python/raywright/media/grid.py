@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Triple, choice, number, real_array
 from ..descriptions import restored, state
-from ..textures.spectrum import Spectrum, colour_or_spectrum
+from ..textures.spectrum import Spectrum, color_or_spectrum
 from .files import read_grids
 from .medium import Medium
 from .phases import Isotropic, Phase
@@ -36,7 +36,7 @@ class GridMedium(Medium):
     Parameters
     ----------
     density : (X, Y, Z) or (X, Y, Z, 3) array, or SparseGrid
-        Numbers that are finite and at least 0, for all colours or for each of red, green and blue, kept as
+        Numbers that are finite and at least 0, for all colors or for each of red, green and blue, kept as
         read-only float32; such arrays are not copied. The first axis is x.
     bounds : (2, 3) array, optional
         Least and greatest corner of the grid; the unit cube if not given.
@@ -122,12 +122,12 @@ class GridMedium(Medium):
             "density": _numbers("density", density, _MANY),
             "bounds": _UNIT if bounds is None else _bounds(bounds),
             "transform": None if transform is None else _transform(transform),
-            "absorption": colour_or_spectrum("absorption", absorption),
-            "scattering": colour_or_spectrum("scattering", scattering),
+            "absorption": color_or_spectrum("absorption", absorption),
+            "scattering": color_or_spectrum("scattering", scattering),
             "phase": checked("phase", phase),
             "emission": _emission(emission),
             "at": at,
-            "extinction": colour_or_spectrum("extinction", extinction),
+            "extinction": color_or_spectrum("extinction", extinction),
             "albedo": None if albedo is None else _numbers("albedo", albedo, _MANY),
             "temperature": None if temperature is None else _numbers("temperature", temperature, _ONE),
             "brightness": number("brightness", brightness),
@@ -258,7 +258,7 @@ def _emission(given: ArrayLike | Spectrum | SparseGrid) -> Triple | Spectrum | N
     is_grid = isinstance(given, SparseGrid) or (
         not isinstance(given, Spectrum) and real_array("emission", given).ndim >= 3
     )
-    return _numbers("emission", given, _MANY) if is_grid else colour_or_spectrum("emission", given)  # type: ignore[arg-type]
+    return _numbers("emission", given, _MANY) if is_grid else color_or_spectrum("emission", given)  # type: ignore[arg-type]
 
 
 def _one_of_both(values: dict[str, Any]) -> None:

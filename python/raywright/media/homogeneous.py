@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from numpy.typing import ArrayLike
 
 from ..arrays import Triple
-from ..textures.spectrum import Spectrum, colour_or_spectrum
+from ..textures.spectrum import Spectrum, color_or_spectrum
 from .medium import Medium
 from .phases import Isotropic, Phase, phase
 
@@ -70,4 +70,4 @@ _phase = phase
 
 def _set(medium: Medium, **values: ArrayLike | Spectrum) -> None:
     for name, value in values.items():
-        object.__setattr__(medium, name, colour_or_spectrum(name, value))
+        object.__setattr__(medium, name, color_or_spectrum(name, value))

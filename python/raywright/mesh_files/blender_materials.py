@@ -17,7 +17,7 @@ _UNUSED = ("Subsurface Weight", "Coat Weight", "Sheen Weight", "Thin Film Thickn
 
 
 def pbr_of(material: Any, left_out: LeftOut) -> Pbr:
-    """Return what a bpy.types.Material says: of its principled, diffuse or emission shader, or its colour.
+    """Return what a bpy.types.Material says: of its principled, diffuse or emission shader, or its color.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def _principled(node: Any, told: str, left_out: LeftOut) -> Pbr:
 def _color(
     node: Any, names: tuple[str, ...], told: str, left_out: LeftOut
 ) -> tuple[NDArray[np.float64] | None, Picture | None]:
-    """Return the linear colour of an input, or the picture that it is linked to."""
+    """Return the linear color of an input, or the picture that it is linked to."""
     name = next((name for name in names if node.inputs.get(name) is not None), names[0])
     source = _linked(node, name)
     if source is not None:

@@ -37,7 +37,7 @@ def of_topology(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
 
 def of_shape(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
     """Yield the mesh of a cadquery.Shape, named by its label."""
-    yield from _labelled(shape, tolerance)
+    yield from _labeled(shape, tolerance)
 
 
 def of_workplane(workplane: Any, tolerance: float | None) -> Iterator[Mesh]:
@@ -74,7 +74,7 @@ def of_assembly(assembly: Any, tolerance: float | None) -> Iterator[Mesh]:
     yield from _several(parts, tolerance, assembly)
 
 
-def of_labelled(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
+def of_labeled(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
     """Yield a mesh for each leaf of a build123d.Shape, with its label and color.
 
     Raises, Warns
@@ -86,7 +86,7 @@ def of_labelled(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
     if not leaves:
         raise ValueError(f"a shape must have faces to become a mesh, got an empty {type(shape).__name__}")
     if leaves == (shape,):
-        yield from _labelled(shape, tolerance)
+        yield from _labeled(shape, tolerance)
         return
     parts = [(leaf.wrapped, leaf.label or None, _inherited(leaf)) for leaf in leaves]
     yield from _several(parts, tolerance, shape)
@@ -103,10 +103,10 @@ def of_builder(builder: Any, tolerance: float | None) -> Iterator[Mesh]:
     built = next((getattr(builder, name) for name in ("part", "sketch") if hasattr(builder, name)), None)
     if built is None:
         raise ValueError(f"a {type(builder).__name__} has built nothing with faces")
-    yield from of_labelled(built, tolerance)
+    yield from of_labeled(built, tolerance)
 
 
-def _labelled(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
+def _labeled(shape: Any, tolerance: float | None) -> Iterator[Mesh]:
     found = _mesh(shape.wrapped, tolerance, shape.label or None, getattr(shape, "color", None))
     if found is None:
         raise ValueError(f"a shape must have faces to become a mesh, got {type(shape).__name__} without")

@@ -17,13 +17,13 @@ from .pbr import Pbr, Picture
 def look_of(visual: Any, count: int) -> Look:
     """Return what a visual of a mesh with `count` vertices says.
 
-    Colours of vertices are kept where they differ; of colours of faces the main one is taken. Of glTF's
-    material there is base colour, metalness, roughness, normals, emission and alpha; of those of OBJ files
-    all that trimesh keeps; of others the diffuse colour or picture.
+    Colors of vertices are kept where they differ; of colors of faces the main one is taken. Of glTF's
+    material there is base color, metalness, roughness, normals, emission and alpha; of those of OBJ files
+    all that trimesh keeps; of others the diffuse color or picture.
     """
     material = getattr(visual, "material", None)
     if material is None:
-        return _coloured(visual, count)
+        return _colored(visual, count)
     if hasattr(material, "baseColorFactor"):
         pbr = _pbr(material)
         return Look(pbr.material(), pbr.emitted())
@@ -41,7 +41,7 @@ def look_of(visual: Any, count: int) -> Look:
     return Look(None if np.array_equal(rgba, DEFAULT_COLOR) else Diffuse(tuple(_linear(rgba[:3]))))
 
 
-def _coloured(visual: Any, count: int) -> Look:
+def _colored(visual: Any, count: int) -> Look:
     kind = getattr(visual, "kind", None)
     if kind == "vertex":
         rgba = np.asarray(visual.vertex_colors)
@@ -54,7 +54,7 @@ def _pbr(given: Any) -> Pbr:
     """Return what a PBRMaterial of trimesh says."""
     factor, emission = given.baseColorFactor, given.emissiveFactor
     return Pbr(
-        # glTF 2.0, 3.9.2: factors are linear already, unlike all other colours here.
+        # glTF 2.0, 3.9.2: factors are linear already, unlike all other colors here.
         color=None if factor is None else np.asarray(factor, np.float64) / 255,
         color_picture=_picture(given.baseColorTexture),
         metallic=None if given.metallicFactor is None else float(given.metallicFactor),

@@ -82,7 +82,7 @@ class Within(NamedTuple):
 
 
 class Film(NamedTuple):
-    """A film of the colours of its thickness (KHR_materials_iridescence).
+    """A film of the colors of its thickness (KHR_materials_iridescence).
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Film(NamedTuple):
     ior : float
         Its index of refraction.
     least, most : float
-        Its thickness in nanometres where its picture is 0, and where it is 1 or there is none.
+        Its thickness in nanometers where its picture is 0, and where it is 1 or there is none.
     thickness : Picture, optional
         Of the thickness, in green.
     """
@@ -112,7 +112,7 @@ class Pbr(NamedTuple):
     Attributes
     ----------
     color : (3,) or (4,) array, optional
-        Linear base colour, and alpha.
+        Linear base color, and alpha.
     color_picture, rough_picture, normal_picture, emission_picture : Picture, optional
         Of base color, of roughness in green and metalness in blue, of normals, and of emission.
     metallic, roughness : float, optional
@@ -227,9 +227,9 @@ class Pbr(NamedTuple):
         picture = self.color_picture
         if picture is None:
             return _triple(_index(factor))
-        colours = picture.pixels[..., : -1 if picture.has_alpha else None]
-        full = _full(colours)
-        shares = linear(np.arange(full + 1) / full)[colours] if colours.dtype.kind == "u" else colours
+        colors = picture.pixels[..., : -1 if picture.has_alpha else None]
+        full = _full(colors)
+        shares = linear(np.arange(full + 1) / full)[colors] if colors.dtype.kind == "u" else colors
         return picture._replace(pixels=_index(shares * factor).astype(np.float32)).texture(linear=True)
 
     def _filmed(self, bare: Material, base: Dielectric | Conductor | None) -> Material:
@@ -278,7 +278,7 @@ class Pbr(NamedTuple):
         return clear if share == 1.0 else Mix(body, clear, share)
 
     def _glass(self, roughness: Number) -> Material:
-        """Return what is clear, with its colour, or with the film on it."""
+        """Return what is clear, with its color, or with the film on it."""
         within = self.within
         pane: Dielectric | ThinDielectric
         if within is None:

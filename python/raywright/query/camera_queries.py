@@ -36,7 +36,7 @@ class CameraQueries(RayQueries):
             floating point, use ``intersect(*camera.rays_through(points))``.
         offsets : (2,) or (..., 2) array
             Position within the pixel, for all pixels or for each, as in `Camera.rays`: (0, 0) is its upper
-            left, (1, 1) its lower right. The default is the centre.
+            left, (1, 1) its lower right. The default is the center.
         threads : int, optional
             Number of threads; all cores if not given. The answer does not depend on it.
         time : float or (...) array, optional

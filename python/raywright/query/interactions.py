@@ -97,7 +97,7 @@ class Interactions:
 
     @cached_property
     def albedo(self) -> Floats:
-        """About the share of white light that is scattered, by colour: (N, 3)."""
+        """About the share of white light that is scattered, by color: (N, 3)."""
         return self._core.albedo
 
     @cached_property

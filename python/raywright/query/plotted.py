@@ -28,7 +28,7 @@ class PlottedPoints:
             .png, .svg or .pdf.
         name : str, optional
             Values that are colored: "t" of hits or "distance" of closest points, as if not given; "shape_id",
-            "primitive_id", "cell", or the name of an attribute. Misses are grey in pictures.
+            "primitive_id", "cell", or the name of an attribute. Misses are gray in pictures.
         up : {"x", "y", "z"}
             The axis that points up in space.
         cmap : str or matplotlib.colors.Colormap

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .. import _core
-from ..arrays import colour, number, thread_limit, triple
+from ..arrays import color, number, thread_limit, triple
 from ..cameras import AnyCamera
 from ..lights import DirectionalLight, PointLight
 from .compilable import Compilable
@@ -97,7 +97,7 @@ class Previews(Compilable):
         share = number("ambient", ambient)
         if not 0 <= share <= 1:
             raise ValueError(f"ambient must be between 0 and 1, got {ambient}")
-        behind = colour("background", background)
+        behind = color("background", background)
         limit = thread_limit(threads)
         shape = (camera.height, camera.width, 3)
         kind = None if dtype is None else _type("dtype", dtype)

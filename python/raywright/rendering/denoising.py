@@ -15,7 +15,7 @@ NO_OIDN = "method='oidn' needs Open Image Denoise: pip install 'raywright[oidn]'
 
 
 class Denoised(NamedTuple):
-    """A picture without noise: its colours, how far they are off, and its relMSE with an interval."""
+    """A picture without noise: its colors, how far they are off, and its relMSE with an interval."""
 
     rgb: NDArray[np.float32]
     off: NDArray[np.float32]

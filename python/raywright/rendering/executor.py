@@ -245,8 +245,8 @@ class Distribution:
         piece = self._flying.pop(future)
         try:
             error = future.exception()
-        except concurrent.futures.CancelledError as cancelled:
-            error = cancelled
+        except concurrent.futures.CancelledError as canceled:
+            error = canceled
         if error is not None:
             self._lost(piece, error)
             return

@@ -12,7 +12,7 @@ _STEPS = 20_000
 
 
 def quantiles(filter: Filter) -> NDArray[np.float64] | None:
-    """Return the quantiles of a filter along one axis, in pixels from a pixel's centre.
+    """Return the quantiles of a filter along one axis, in pixels from a pixel's center.
 
     Parameters
     ----------

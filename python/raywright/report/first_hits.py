@@ -1,4 +1,4 @@
-"""The first hits of a picture by rays and by rasterising, side by side."""
+"""The first hits of a picture by rays and by rasterizing, side by side."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     wanted, found = scene.intersect(*rays, threads=threads), scene.first_hits(camera, threads=threads)
     core = scene._compiled()
     if core.curved:
-        raise ValueError("only meshes can be rasterised, and the scene has other shapes")
+        raise ValueError("only meshes can be rasterized, and the scene has other shapes")
     by_tree = _core.first_hits(core, camera, np.array((0.5, 0.5)), threads)[4]
     pixels = camera.width * camera.height
     differ = wanted.t.view(np.int64) != found.t.view(np.int64)
@@ -88,7 +88,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     ways: dict[str, Callable[[], object]] = {
         "rays at hand": lambda: scene.intersect(*rays, threads=threads),
         "rays made": lambda: scene.intersect(*camera.rays(), threads=threads),
-        "rasterised": lambda: scene.first_hits(camera, threads=threads),
+        "rasterized": lambda: scene.first_hits(camera, threads=threads),
     }
     seconds: dict[str, list[float]] = {way: [] for way in ways}
     for _ in range(repeats):
@@ -103,8 +103,8 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
             1e3 * median,
             1e-6 * pixels / median,
             medians["rays at hand"] / median,
-            by_tree / pixels if way == "rasterised" else 1.0,
-            int(np.count_nonzero(differ)) if way == "rasterised" else 0,
+            by_tree / pixels if way == "rasterized" else 1.0,
+            int(np.count_nonzero(differ)) if way == "rasterized" else 0,
         )
         for way, median in medians.items()
     ]

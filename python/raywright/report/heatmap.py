@@ -21,7 +21,7 @@ from .time_share import TimeShare, time_share
 What: TypeAlias = Literal["nodes", "primitives"]
 
 _LEVELS = 256
-# Least height of saved pictures, so that the numbers of the colour bar are readable.
+# Least height of saved pictures, so that the numbers of the color bar are readable.
 _LEAST_HEIGHT = 240
 _GAP, _BAR, _TEXT = 12, 16, 84
 _NAMES = {"nodes": "nodes visited", "primitives": "primitives tested"}
@@ -39,7 +39,7 @@ class Heatmap:
         Nodes visited and primitives tested for each pixel's closest hit.
     what : {"nodes", "primitives"}
         The count in the picture.
-    most : int
+    vmax : int
         Count of the last color, which greater counts have too.
     share : TimeShare or None
         Estimated shares of time in boxes and in primitives, if requested.
@@ -60,7 +60,7 @@ class Heatmap:
     nodes: NDArray[np.int32]
     primitives: NDArray[np.int32]
     what: What
-    most: int
+    vmax: int
     share: TimeShare | None = None
 
     @property
@@ -69,7 +69,7 @@ class Heatmap:
         return self.nodes if self.what == "nodes" else self.primitives
 
     def srgb(self) -> NDArray[np.uint8]:
-        """Return the picture without its colour bar: (H, W, 3) uint8, sRGB.
+        """Return the picture without its color bar: (H, W, 3) uint8, sRGB.
 
         Returns
         -------
@@ -77,7 +77,7 @@ class Heatmap:
 
         See Also
         --------
-        Heatmap.save : With the colour bar.
+        Heatmap.save : With the color bar.
 
         Examples
         --------
@@ -86,8 +86,8 @@ class Heatmap:
         >>> rw.report.heatmap(scene, camera, repeats=0).srgb().shape
         (6, 8, 3)
         """
-        level = np.minimum(self.counts.astype(np.int64), self.most) * (_LEVELS - 1)
-        return np.asarray(COLOURS[(level + self.most // 2) // self.most])
+        level = np.minimum(self.counts.astype(np.int64), self.vmax) * (_LEVELS - 1)
+        return np.asarray(COLORS[(level + self.vmax // 2) // self.vmax])
 
     def summary(self) -> Table[Any]:
         """Return the numbers: mean, median, 99th percentile and maximum of both counts.
@@ -160,7 +160,7 @@ class Heatmap:
             file.write_bytes(self._repr_png_())
 
     def plot(self, ax: Any = None) -> Any:
-        """Draw the picture with matplotlib, with a colour bar.
+        """Draw the picture with matplotlib, with a color bar.
 
         Parameters
         ----------
@@ -201,8 +201,8 @@ class Heatmap:
     def _draw(self, ax: Any) -> None:
         from matplotlib.colors import ListedColormap
 
-        shown = ax.imshow(self.counts, cmap=ListedColormap(COLOURS / 255), vmin=0, vmax=self.most)
-        extend = "max" if self.counts.max() > self.most else "neither"
+        shown = ax.imshow(self.counts, cmap=ListedColormap(COLORS / 255), vmin=0, vmax=self.vmax)
+        extend = "max" if self.counts.max() > self.vmax else "neither"
         ax.figure.colorbar(shown, ax=ax, extend=extend, label=_NAMES[self.what])
         ax.set_axis_off()
 
@@ -212,7 +212,7 @@ class Heatmap:
         return out.getvalue()
 
     def _drawn(self) -> Any:
-        """Return the picture beside its colour bar, as Pillow has pictures."""
+        """Return the picture beside its color bar, as Pillow has pictures."""
         from PIL import Image, ImageDraw
 
         zoom = -(-_LEAST_HEIGHT // self.counts.shape[0])
@@ -225,12 +225,12 @@ class Heatmap:
         draw.text((left, 2), self.what, fill="black")
         top, bottom = 22, height - 10
         for y in range(top, bottom + 1):
-            colour = COLOURS[round((_LEVELS - 1) * (bottom - y) / (bottom - top))]
-            draw.line([(left, y), (left + _BAR - 1, y)], fill=tuple(colour.tolist()))
-        for count in ticks(self.most):
-            y = round(bottom - (bottom - top) * count / self.most)
+            color = COLORS[round((_LEVELS - 1) * (bottom - y) / (bottom - top))]
+            draw.line([(left, y), (left + _BAR - 1, y)], fill=tuple(color.tolist()))
+        for count in ticks(self.vmax):
+            y = round(bottom - (bottom - top) * count / self.vmax)
             # Pillow's own font is only sure to have ASCII, without a sign for "at least".
-            more = "+" if count == self.most and self.counts.max() > self.most else ""
+            more = "+" if count == self.vmax and self.counts.max() > self.vmax else ""
             draw.line([(left + _BAR, y), (left + _BAR + 3, y)], fill="black")
             draw.text((left + _BAR + 6, y - 6), f"{count:,}{more}", fill="black")
         return page
@@ -240,14 +240,14 @@ class Heatmap:
 
     def __repr__(self) -> str:
         height, width = self.counts.shape
-        return f"Heatmap({width}x{height}, {_NAMES[self.what]}, 0 to {self.most})"
+        return f"Heatmap({width}x{height}, {_NAMES[self.what]}, 0 to {self.vmax})"
 
 
 def heatmap(
     scene: Scene,
     camera: AnyCamera,
     what: What = "nodes",
-    most: int | None = None,
+    vmax: int | None = None,
     repeats: int = 7,
     threads: int | None = None,
 ) -> Heatmap:
@@ -258,10 +258,10 @@ def heatmap(
     scene : Scene
         The scene, whose accelerator is measured.
     camera : Camera or another kind
-        Camera whose rays go through the centres of the pixels.
+        Camera whose rays go through the centers of the pixels.
     what : {"nodes", "primitives"}
         The count in the picture: nodes visited, or primitives tested.
-    most : int, optional
+    vmax : int, optional
         Count of the last color, at least 1; by default the maximum. Use the same value for pictures to
         compare.
     repeats : int
@@ -308,9 +308,9 @@ def heatmap(
     rays = camera.rays()
     cost = scene.traversal_cost(*rays, threads=threads)
     counts = cost.nodes if what == "nodes" else cost.primitives
-    most = max(int(counts.max()), 1) if most is None else integer("most", most, 1)
+    vmax = max(int(counts.max()), 1) if vmax is None else integer("vmax", vmax, 1)
     share = time_share(scene, rays, repeats) if repeats else None
-    return Heatmap(cost.nodes, cost.primitives, what, most, share)
+    return Heatmap(cost.nodes, cost.primitives, what, vmax, share)
 
 
 def ticks(most: int) -> list[int]:
@@ -323,15 +323,15 @@ def ticks(most: int) -> list[int]:
 
 
 def _cubehelix() -> NDArray[np.uint8]:
-    """Colours from black to white of evenly rising lightness, sRGB: (256, 3)."""
+    """Colors from black to white of evenly rising lightness, sRGB: (256, 3)."""
     light = np.linspace(0, 1, _LEVELS)
     # Green's defaults: the start is purple, with one and a half turns.
     angle = 2 * np.pi * (0.5 / 3 + 1 - 1.5 * light)
     amplitude = light * (1 - light) / 2
     turns = np.array([[-0.14861, 1.78277], [-0.29227, -0.90649], [1.97294, 0.0]])
-    colours = light + amplitude * (turns @ np.stack([np.cos(angle), np.sin(angle)]))
-    return np.asarray(np.clip(colours.T, 0, 1) * 255 + 0.5, np.uint8)
+    colors = light + amplitude * (turns @ np.stack([np.cos(angle), np.sin(angle)]))
+    return np.asarray(np.clip(colors.T, 0, 1) * 255 + 0.5, np.uint8)
 
 
-COLOURS = _cubehelix()
+COLORS = _cubehelix()
 """What counts are drawn in, from none to the most: (256, 3) uint8, sRGB."""

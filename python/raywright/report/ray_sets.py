@@ -74,12 +74,12 @@ class Rays:
         """Number of rays."""
         return self.origins.size // 3
 
-    def thinned(self, most: int) -> Rays:
-        """Return at most `most` of the rays, evenly spread; an image stays an image.
+    def thinned(self, max_rays: int) -> Rays:
+        """Return at most `max_rays` of the rays, evenly spread; an image stays an image.
 
         Parameters
         ----------
-        most : int
+        max_rays : int
             Maximum number of rays.
 
         Returns
@@ -91,16 +91,16 @@ class Rays:
         >>> rw.report.Rays(np.zeros((100, 3)), [0, 0, 1]).thinned(10).count
         10
         """
-        if self.count <= most:
+        if self.count <= max_rays:
             return self
         lead = self.origins.shape[:-1]
-        if len(lead) == 2 and min(lead) ** 2 > self.count / most:
-            step = int(np.ceil((self.count / most) ** 0.5))
-            while -(-lead[0] // step) * -(-lead[1] // step) > most:
+        if len(lead) == 2 and min(lead) ** 2 > self.count / max_rays:
+            step = int(np.ceil((self.count / max_rays) ** 0.5))
+            while -(-lead[0] // step) * -(-lead[1] // step) > max_rays:
                 step += 1
             origins, directions = (a[::step, ::step] for a in (self.origins, self.directions))
         else:
-            chosen = np.linspace(0, self.count - 1, max(most, 1)).astype(np.int64)
+            chosen = np.linspace(0, self.count - 1, max(max_rays, 1)).astype(np.int64)
             origins, directions = (a.reshape(-1, 3)[chosen] for a in (self.origins, self.directions))
         return replace(self, origins=origins, directions=directions)
 
@@ -203,9 +203,9 @@ def outside(scene: Scene, side: int = 256) -> Camera:
     bounds = scene.bounds
     if bounds is None:
         raise ValueError("the scene is empty, so no rays can be aimed at it")
-    centre = bounds[0] / 2 + bounds[1] / 2
+    center = bounds[0] / 2 + bounds[1] / 2
     radius = float(np.linalg.norm(bounds[1] / 2 - bounds[0] / 2)) or 1.0
-    return Camera(centre + _DISTANCE * radius * _AWAY, centre, fov=_FOV, width=side, height=side)
+    return Camera(center + _DISTANCE * radius * _AWAY, center, fov=_FOV, width=side, height=side)
 
 
 def _lamps(

@@ -336,13 +336,13 @@ class Table(Generic[Row]):
     def _draw(self, ax: Any, chart: Chart) -> None:
         across, up = self.columns[self._at(chart.x)], self.columns[self._at(chart.y)]
         xs, ys = (_drawable(self.column(column.name)) for column in (across, up))
-        colours = self.column(chart.color)
+        colors = self.column(chart.color)
         markers = self.column(chart.marker) if chart.marker else ("",) * len(self.rows)
         shapes = dict(zip(dict.fromkeys(markers), "osD^vP*Xhp<>" * (len(self.rows) // 12 + 1), strict=False))
-        shades = {name: f"C{i}" for i, name in enumerate(dict.fromkeys(colours))}
+        shades = {name: f"C{i}" for i, name in enumerate(dict.fromkeys(colors))}
         style = "-" if chart.lines else ""
-        for color, marker in dict.fromkeys(zip(colours, markers, strict=True)):
-            mine = [i for i, key in enumerate(zip(colours, markers, strict=True)) if key == (color, marker)]
+        for color, marker in dict.fromkeys(zip(colors, markers, strict=True)):
+            mine = [i for i, key in enumerate(zip(colors, markers, strict=True)) if key == (color, marker)]
             points = [(xs[i], ys[i]) for i in mine if xs[i] is not None and ys[i] is not None]
             ax.plot(
                 [p[0] for p in points],
@@ -353,7 +353,7 @@ class Table(Generic[Row]):
             )
         ax.set(xscale="log", yscale="log", xlabel=across.heading, ylabel=up.heading, title=self.title)
         ax.grid(True, which="major", alpha=0.3)
-        # Separate legend entries: one for each colour, one for each marker, or one for both.
+        # Separate legend entries: one for each color, one for each marker, or one for both.
         both = chart.marker == chart.color
         for name, shade in shades.items():
             key = {"marker": shapes[name], "linestyle": style} if both else {"linewidth": 5}

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import choice, integer
 from ..io.plots import plotted
 from ..scene.scene import Scene
-from .heatmap import COLOURS
+from .heatmap import COLORS
 
 Plane: TypeAlias = Literal["xy", "xz", "yz"]
 
@@ -80,9 +80,9 @@ def tree(
     def draw(ax: Any) -> None:
         from matplotlib.collections import LineCollection
 
-        colours = np.repeat(COLOURS[shades] / 255, len(_EDGES), axis=0)
+        colors = np.repeat(COLORS[shades] / 255, len(_EDGES), axis=0)
         widths = np.repeat(2.0 / (1 + boxes.depth[drawn]) + 0.4, len(_EDGES))
-        ax.add_collection(LineCollection(list(lines), colors=colours, linewidths=widths))
+        ax.add_collection(LineCollection(list(lines), colors=colors, linewidths=widths))
         ax.autoscale_view()
         ax.set_aspect("equal")
         count = f"{np.count_nonzero(drawn):,} {'leaves' if leaves else 'boxes'}"

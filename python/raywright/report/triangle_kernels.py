@@ -55,7 +55,7 @@ class KernelRow(NamedTuple):
 
     Examples
     --------
-    >>> row = rw.report.kernels(pairs=10, repeat=1).rows[0]
+    >>> row = rw.report.kernels(pairs=10, repeats=1).rows[0]
     >>> row.family, row.wrong
     ('ordinary', 0)
     """
@@ -86,7 +86,7 @@ class KernelReport(Table[KernelRow]):
 
     Examples
     --------
-    >>> found = rw.report.kernels(pairs=10, repeat=1)
+    >>> found = rw.report.kernels(pairs=10, repeats=1)
     >>> found.pairs, len(found.rows) % len(found.summary().rows)
     (10, 0)
     """
@@ -102,7 +102,7 @@ class KernelReport(Table[KernelRow]):
 
         Examples
         --------
-        >>> found = rw.report.kernels(pairs=10, repeat=1)
+        >>> found = rw.report.kernels(pairs=10, repeats=1)
         >>> len(found.summary().rows) == len(set(found.column("routine")))
         True
         """
@@ -125,7 +125,7 @@ class KernelReport(Table[KernelRow]):
         return Table(_TITLE, tuple(columns), tuple(rows), notes, Chart("ns", "max_ulps", "routine"))
 
 
-def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> KernelReport:
+def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeats: int = 15) -> KernelReport:
     """Measure error and time of every ray-triangle routine on pairs of a ray and a triangle.
 
     Families of pairs: ordinary; slivers of aspect 1e3 to 1e8; grazing rays at a sine of 1e-7 to 1e-3; origins
@@ -146,7 +146,7 @@ def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> Kernel
         Pairs in each family, 1 to 100,000.
     seed : int, Generator or SeedSequence
         Seed of the pairs; the same seed gives the same pairs and errors.
-    repeat : int
+    repeats : int
         Number of timings of each routine, 1 to 10,000; the result is the median. Routines take turns, so
         other load on the machine affects all equally.
 
@@ -169,18 +169,18 @@ def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> Kernel
 
     Examples
     --------
-    >>> found = rw.report.kernels(pairs=10, repeat=1)
+    >>> found = rw.report.kernels(pairs=10, repeats=1)
     >>> bool(min(found.column("ns")) > 0)
     True
     """
     pairs = integer("pairs", pairs, 1, 100_000)
     seed = seed_number(seed)
-    repeat = integer("repeat", repeat, 1, 10_000)
+    repeats = integer("repeats", repeats, 1, 10_000)
     rows: list[KernelRow] = []
     for name in FAMILIES:
-        rows += _rows(name, family(name, pairs, seed), repeat)
+        rows += _rows(name, family(name, pairs, seed), repeats)
     notes = (
-        f"{pairs:,} pairs of each kind, seed {seed}; ns/test: median of {repeat} runs.",
+        f"{pairs:,} pairs of each kind, seed {seed}; ns/test: median of {repeats} runs.",
         "missed, false: hits not found and misses taken for hits, by exact arithmetic.",
         "ulps: the error of t, where a hit is found, in units in the last place of a float32.",
     )
@@ -189,9 +189,9 @@ def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeat: int = 15) -> Kernel
     )
 
 
-def _rows(name: str, pairs: Pairs, repeat: int) -> list[KernelRow]:
+def _rows(name: str, pairs: Pairs, repeats: int) -> list[KernelRow]:
     contest = KernelContest(pairs.origins, pairs.directions, pairs.corners.reshape(-1, 9))
-    rounds = [contest.round() for _ in range(repeat)]
+    rounds = [contest.round() for _ in range(repeats)]
     seconds = np.median(np.array(rounds), axis=0) / len(pairs)
     truth = exact_hits(pairs.origins, pairs.directions, pairs.corners)
     return [

@@ -47,10 +47,10 @@ def framed(
     width, height = integer("width", width, 1, 65536), integer("height", height, 1, 65536)
     axes = upright_axes(up)
     points = outline(shapes)
-    centre = points.min(axis=0) / 2 + points.max(axis=0) / 2
+    center = points.min(axis=0) / 2 + points.max(axis=0) / 2
     away = direction(CAMERA_ANGLES) @ axes
-    distance = _distance(points - centre, away, axes[1], width / height)
-    return Camera(centre + distance * away, centre, axes[1], _FOV, width, height)
+    distance = _distance(points - center, away, axes[1], width / height)
+    return Camera(center + distance * away, center, axes[1], _FOV, width, height)
 
 
 def outline(shapes: Any) -> NDArray[np.float64]:

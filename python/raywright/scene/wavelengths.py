@@ -36,7 +36,7 @@ def _of(thing: Any, name: str, seen: set[int]) -> str | None:
     if isinstance(thing, Dispersion):
         return f"the {name} of glass goes with wavelength, by {type(thing).__name__}'s formula"
     if isinstance(thing, Spectrum):
-        return f"a {name or 'colour'} is a {type(thing).__name__}"
+        return f"a {name or 'color'} is a {type(thing).__name__}"
     if isinstance(thing, tuple):
         return next((why for one in thing if (why := _of(one, name, seen))), None)
     if isinstance(thing, Shape | np.ndarray) or not is_dataclass(thing) or id(thing) in seen:

@@ -58,7 +58,7 @@ def material_ball(
         uv=[(0, 0), (_SQUARES, 0), (_SQUARES, _SQUARES), (0, _SQUARES)],
         material=Diffuse(Checker(0.15, 0.6)),
     )
-    # The ball touches the ring: their centres are the ball's radius plus the ring's thickness apart.
+    # The ball touches the ring: their centers are the ball's radius plus the ring's thickness apart.
     thick = 0.12
     height_of_ring = ground + thick
     around = math.sqrt((1.0 + thick) ** 2 - height_of_ring**2)

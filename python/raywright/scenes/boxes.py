@@ -13,18 +13,18 @@ _QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2
 _FACES = np.concatenate([_QUADS[:, [0, 1, 2]], _QUADS[:, [0, 2, 3]]])
 
 
-def boxes(centres: Array, halves: Array, turns: Array | None = None) -> tuple[Array, NDArray[np.int64]]:
+def boxes(centers: Array, halves: Array, turns: Array | None = None) -> tuple[Array, NDArray[np.int64]]:
     """Return boxes as vertices and faces, 8 and 12 of each, box after box; wound anticlockwise from outside.
 
     Parameters
     ----------
-    centres : (N, 3) float64
+    centers : (N, 3) float64
     halves : (N, 3) float64
         Half of each box's length along its own axes.
     turns : (N, 3, 3) float64, optional
         The boxes' own axes as rows; those of the world if not given. They must be right-handed.
     """
     corners = _CUBE * halves[:, np.newaxis]
-    corners = centres[:, np.newaxis] + (corners if turns is None else corners @ turns)
+    corners = centers[:, np.newaxis] + (corners if turns is None else corners @ turns)
     faces = _FACES + 8 * np.arange(len(corners))[:, np.newaxis, np.newaxis]
     return corners.reshape(-1, 3), faces.reshape(-1, 3)

@@ -17,7 +17,7 @@ def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
     """Return a city: a ground with blocks of houses, which are higher towards the center.
 
     Blocks are squares of 60 m with streets of 18 m between. Each has 3 by 3 plots with one house or two
-    stacked ones, and some smaller boxes on every roof. y is up, the ground is at y = 0, and the centre over
+    stacked ones, and some smaller boxes on every roof. y is up, the ground is at y = 0, and the center over
     the origin.
 
     Parameters
@@ -53,7 +53,7 @@ def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
     rng = np.random.default_rng(seed_number(seed, None))
     pitch, plots = _BLOCK + _STREET, 3 * blocks
     edge = pitch * blocks / 2
-    # Centres of plots along a side: three in a block, then a street.
+    # Centers of plots along a side: three in a block, then a street.
     plot = np.arange(plots)
     line = pitch * (plot // 3) + _BLOCK * (plot % 3 + 0.5) / 3 + _STREET / 2 - edge
     x, z = (a.reshape(-1) for a in np.meshgrid(line, line, indexing="ij"))
@@ -61,7 +61,7 @@ def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
     tall = 1 + 7 * np.exp(-(x**2 + z**2) / (0.35 * edge) ** 2)
     height = _FLOOR * np.ceil(tall * np.exp(rng.normal(1.0, 0.45, count)))
     wide = _BLOCK / 6 * rng.uniform(0.75, 0.97, (count, 2))
-    # Towers have storeys above the setback; flat houses have a low one.
+    # Towers have stories above the setback; flat houses have a low one.
     upper = _FLOOR * np.ceil(rng.uniform(0.1, 0.6, count) * height / _FLOOR)
     narrow = wide * rng.uniform(0.5, 0.85, (count, 1))
     parts = [(x, z, np.zeros(count), wide, height), (x, z, height, narrow, upper)]
@@ -70,9 +70,9 @@ def city(blocks: int = 12, seed: SeedLike = 0) -> list[Mesh]:
         small = np.minimum(rng.uniform(0.6, 2.0, (count, 2)), 0.4 * narrow)
         shift = (narrow - small) * rng.uniform(-1, 1, (count, 2))
         parts.append((x + shift[:, 0], z + shift[:, 1], top, small, rng.uniform(1.0, 4.0, count)))
-    centres = [np.stack([px, base + high / 2, pz], axis=1) for px, pz, base, _, high in parts]
+    centers = [np.stack([px, base + high / 2, pz], axis=1) for px, pz, base, _, high in parts]
     halves = [np.stack([half[:, 0], high / 2, half[:, 1]], axis=1) for *_, half, high in parts]
-    vertices, faces = boxes(np.stack(centres, 1).reshape(-1, 3), np.stack(halves, 1).reshape(-1, 3))
+    vertices, faces = boxes(np.stack(centers, 1).reshape(-1, 3), np.stack(halves, 1).reshape(-1, 3))
     ground = np.array([[-edge, 0, edge], [edge, 0, edge], [edge, 0, -edge], [-edge, 0, -edge]])
     return [
         Mesh(ground, [[0, 1, 2], [0, 2, 3]], material=Diffuse(0.25)),

@@ -21,7 +21,7 @@ Quads = list[list[Triple]]
 WHITE, RED, GREEN = map(Diffuse, (cornell_spectra.WHITE, cornell_spectra.RED, cornell_spectra.GREEN))
 LAMP = Diffuse(cornell_spectra.LAMP_REFLECTANCE)
 
-# The measured box, in millimetres: each row is a quadrilateral, anticlockwise as seen from inside the room
+# The measured box, in millimeters: each row is a quadrilateral, anticlockwise as seen from inside the room
 # (walls) or from outside (blocks). https://www.graphics.cornell.edu/online/box/data.html
 LIGHT: Quads = [[(343, 548.8, 227), (343, 548.8, 332), (213, 548.8, 332), (213, 548.8, 227)]]
 FLOOR: Quads = [[(552.8, 0, 0), (0, 0, 0), (0, 0, 559.2), (549.6, 0, 559.2)]]
@@ -56,7 +56,7 @@ _STAND_SIZE = (230.0, 260.0, 230.0)
 def cornell_box(
     mesh: Any = None, width: int = 512, height: int = 512, emission: ArrayLike = cornell_spectra.EMISSION
 ) -> tuple[Scene, Camera]:
-    """Return the Cornell box (Goral et al. 1984), in millimetres, and the camera that belongs to it.
+    """Return the Cornell box (Goral et al. 1984), in millimeters, and the camera that belongs to it.
 
     Dimensions and colors are those of the real box at Cornell. Colors are measured spectra, converted to
     linear Rec. 709 such that a constant spectrum is gray.

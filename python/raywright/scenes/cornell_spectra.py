@@ -1,4 +1,4 @@
-"""The colours of the Cornell box, from the spectra that were measured of it.
+"""The colors of the Cornell box, from the spectra that were measured of it.
 
 Reflectances of its walls and the radiance of its lamp, as published by the Cornell University Program of
 Computer Graphics ("Cornell Box Data").
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Triple
 
-# Nanometres.
+# Nanometers.
 _WAVELENGTHS = np.arange(400, 701, 4)
 
 _WHITE = """
@@ -41,7 +41,7 @@ _TO_RGB = np.array([[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.05
 
 
 def _matching() -> NDArray[np.float64]:
-    """Return the CIE 1931 colour-matching functions, (3, W).
+    """Return the CIE 1931 color-matching functions, (3, W).
 
     Sums of lobes by Wyman, Sloan and Shirley, "Simple Analytic Approximations to the CIE XYZ Color Matching
     Functions" (2013), within 1 % of the tables' peaks.
@@ -63,18 +63,18 @@ def _matching() -> NDArray[np.float64]:
     return lobes
 
 
-def _colour(spectrum: NDArray[np.float64]) -> Triple:
-    """Linear Rec. 709 of a spectrum, such that one that is the same everywhere is grey of its value."""
+def _color(spectrum: NDArray[np.float64]) -> Triple:
+    """Linear Rec. 709 of a spectrum, such that one that is the same everywhere is gray of its value."""
     response = _TO_RGB @ _matching()
     red, green, blue = (response @ spectrum) / response.sum(axis=1)
     return float(red), float(green), float(blue)
 
 
 def _of_table(table: str) -> Triple:
-    return _colour(np.array(table.split(), np.float64))
+    return _color(np.array(table.split(), np.float64))
 
 
 WHITE = _of_table(_WHITE)
 RED = _of_table(_RED)
 GREEN = _of_table(_GREEN)
-EMISSION = _colour(np.interp(_WAVELENGTHS, list(_LAMP), list(_LAMP.values())))
+EMISSION = _color(np.interp(_WAVELENGTHS, list(_LAMP), list(_LAMP.values())))

@@ -120,7 +120,7 @@ def forest(
     triangles : int
         Triangles of each unique tree, exactly; more than 400.
     spacing : float
-        Side of the squares, in metres.
+        Side of the squares, in meters.
     seed : int, Generator or SeedSequence
         Seed of trees and places.
 

@@ -63,7 +63,7 @@ def torus_knot(
     plane = ring * turn
     plane1 = (-q * wave + 1j * p * ring) * turn
     plane2 = (-q * q * (ring - 1) - 2j * p * q * wave - p * p * ring) * turn
-    centre = np.stack([plane.real, plane.imag, wave], axis=1)
+    center = np.stack([plane.real, plane.imag, wave], axis=1)
     velocity = np.stack([plane1.real, plane1.imag, q * (ring - 1)], axis=1)
     acceleration = np.stack([plane2.real, plane2.imag, -q * q * wave], axis=1)
 
@@ -74,7 +74,7 @@ def torus_knot(
     normal = np.cross(binormal, tangent)
     theta = (np.arange(around) * (2 * np.pi / around))[:, np.newaxis]
     outward = np.cos(theta) * normal[:, np.newaxis] + np.sin(theta) * binormal[:, np.newaxis]
-    vertices = centre[:, np.newaxis] + tube * outward
+    vertices = center[:, np.newaxis] + tube * outward
 
     i, j = np.meshgrid(np.arange(along), np.arange(around), indexing="ij")
     i1, j1 = (i + 1) % along, (j + 1) % around

@@ -18,7 +18,7 @@ _HALF, _POWER = 0.01, 400.0
 def many_lights(
     lights: int = 2000, seed: SeedLike = 0, width: int = 512, height: int = 512
 ) -> tuple[Scene, Camera]:
-    """Return the room of `room` lit by many small lamps of all colours, and a camera.
+    """Return the room of `room` lit by many small lamps of all colors, and a camera.
 
     Only a few of them matter at each point: a choice by power alone wastes samples on distant lamps and on
     those that face away.
@@ -52,13 +52,13 @@ def many_lights(
     shell = room(20_000, seed)
     rng = np.random.default_rng(seed)
     places = rng.uniform(0.1 * SIZE, 0.9 * SIZE, (count, 3))
-    colours = rng.uniform(0.2, 1.0, (count, 3)) * (_POWER / count / (4 * _HALF**2 * np.pi))
+    colors = rng.uniform(0.2, 1.0, (count, 3)) * (_POWER / count / (4 * _HALF**2 * np.pi))
     lamps = []
-    for place, colour, way in zip(places, colours, rng.normal(size=(count, 3)), strict=True):
+    for place, color, way in zip(places, colors, rng.normal(size=(count, 3)), strict=True):
         normal = way / np.linalg.norm(way)
         side = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
         side *= _HALF / np.linalg.norm(side)
         other = np.cross(normal, side)
         corners = [place - side - other, place + side - other, place + side + other, place - side + other]
-        lamps.append(Mesh(corners, [[0, 1, 2], [0, 2, 3]], material=Diffuse(0.0), emission=colour))
+        lamps.append(Mesh(corners, [[0, 1, 2], [0, 2, 3]], material=Diffuse(0.0), emission=color))
     return Scene([*shell, *lamps]), Camera(EYE, TARGET, fov=60.0, width=width, height=height)

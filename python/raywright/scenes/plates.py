@@ -14,7 +14,7 @@ from ..shapes.mesh import Mesh
 _EYE = np.array((0.0, 2.0, 15.0))
 # Half extents of each plate, along x and across.
 _HALF = (4.0, 0.5)
-# Centres of the plates, in y and z, and their roughness alpha.
+# Centers of the plates, in y and z, and their roughness alpha.
 _PLATES = (((-1.2, 1.4), 0.005), ((-2.1, 2.8), 0.02), ((-2.8, 4.4), 0.05), ((-3.3, 6.1), 0.1))
 # Position along x, radius, and radiance: all emit the same power.
 _LAMPS = tuple((x, r, 1.0 / r**2) for x, r in ((-3.75, 1 / 30), (-1.25, 0.1), (1.25, 0.3), (3.75, 0.9)))

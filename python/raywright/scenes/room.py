@@ -9,7 +9,7 @@ from ..shapes.mesh import Mesh
 from .boxes import Array, boxes
 
 SIZE = np.array([8.0, 3.0, 5.0])
-"""The room's length, height and depth, in metres."""
+"""The room's length, height and depth, in meters."""
 
 EYE, TARGET, LAMP = np.array([[0.05, 0.55, 0.93], [0.7, 0.4, 0.3], [0.55, 0.9, 0.55]]) * SIZE
 """Where a camera stands well, where it looks, and where a lamp hangs."""
@@ -64,18 +64,18 @@ def room(triangles: int = 70_000, seed: SeedLike = 0) -> list[Mesh]:
     # Right-handed, so that no box is turned inside out.
     turn[::8] = braces * np.sign(np.linalg.det(braces))[:, np.newaxis, np.newaxis]
     loose = rng.uniform(0, 1, (beams, 3)) * SIZE
-    centres = np.concatenate([*(centre for centre, _ in panels), loose])
+    centers = np.concatenate([*(center for center, _ in panels), loose])
     halves = np.concatenate([*(half for _, half in panels), half])
-    turns = np.concatenate([np.broadcast_to(np.eye(3), (len(centres) - beams, 3, 3)), turn])
-    vertices, faces = boxes(centres, halves, turns)
+    turns = np.concatenate([np.broadcast_to(np.eye(3), (len(centers) - beams, 3, 3)), turn])
+    vertices, faces = boxes(centers, halves, turns)
     return [Mesh(vertices.astype(np.float32), faces)]
 
 
 def _boards(axis: int, end: float, count: int) -> tuple[Array, Array]:
-    """Return one side of the room, across `axis` at `end`: centres and halves of boards side by side."""
+    """Return one side of the room, across `axis` at `end`: centers and halves of boards side by side."""
     across = (axis + 1) % 3
-    centre, half = np.tile(SIZE / 2, (count, 1)), np.tile(SIZE / 2, (count, 1))
-    centre[:, axis], half[:, axis] = end, 0.025
+    center, half = np.tile(SIZE / 2, (count, 1)), np.tile(SIZE / 2, (count, 1))
+    center[:, axis], half[:, axis] = end, 0.025
     half[:, across] = SIZE[across] / count / 2
-    centre[:, across] = (2 * np.arange(count) + 1) * half[:, across]
-    return centre, half
+    center[:, across] = (2 * np.arange(count) + 1) * half[:, across]
+    return center, half

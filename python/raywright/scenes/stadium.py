@@ -9,7 +9,7 @@ from ..materials import Diffuse
 from ..shapes.mesh import Mesh
 from .teapot import teapot
 
-# Half extents of the field, in metres; depth and height of a tier.
+# Half extents of the field, in meters; depth and height of a tier.
 _FIELD = np.array([60.0, 40.0])
 _DEPTH, _RISE = 0.8, 0.45
 
@@ -31,7 +31,7 @@ def teapot_in_stadium(
     around : int
         Number of pieces of each row, 3 at least; four triangles each.
     width : float
-        Width of the teapot from handle to spout, in metres.
+        Width of the teapot from handle to spout, in meters.
 
     Returns
     -------

@@ -69,13 +69,13 @@ def studio(
     """
     parts = meshes(shapes)
     camera = framed(parts, up, width, height)
-    centre, radius, axes = _room(parts, up)
+    center, radius, axes = _room(parts, up)
 
     # The floor lies slightly below the mesh, so that a flat bottom is not in its plane.
-    lowest = float(((outline(parts) - centre) @ axes[1]).min())
-    ground = centre + (lowest - 1e-4 * radius) * axes[1]
+    lowest = float(((outline(parts) - center) @ axes[1]).min())
+    ground = center + (lowest - 1e-4 * radius) * axes[1]
     floor = _square(ground, axes[0], -axes[2], 25 * radius, Diffuse(0.4))
-    lamp = _lamp(centre, radius, axes)
+    lamp = _lamp(center, radius, axes)
     return Scene([*parts, floor, lamp], environment=_SKY, accelerator=accelerator), camera
 
 
@@ -98,7 +98,7 @@ def lit(shapes: Any, camera: AnyCamera) -> Scene:
         As `studio`.
     """
     parts = meshes(shapes)
-    centre, radius, axes = _room(parts, "y")
+    center, radius, axes = _room(parts, "y")
     # For a camera that looks straight down, the bottom of its picture counts as near.
     for away in (-camera.forward, -np.array(camera.up)):
         level = away - (away @ axes[1]) * axes[1]
@@ -107,8 +107,8 @@ def lit(shapes: Any, camera: AnyCamera) -> Scene:
     around = math.atan2(level @ axes[0], level @ axes[2]) - math.radians(CAMERA_ANGLES[0])
     cos, sin = math.cos(around), math.sin(around)
     turned = np.stack([cos * axes[0] - sin * axes[2], axes[1], sin * axes[0] + cos * axes[2]])
-    farther = float(np.linalg.norm(np.array(camera.position) - centre)) / _LAMP_DISTANCE
-    return Scene([*parts, _lamp(centre, max(radius, farther), turned)], environment=_SKY)
+    farther = float(np.linalg.norm(np.array(camera.position) - center)) / _LAMP_DISTANCE
+    return Scene([*parts, _lamp(center, max(radius, farther), turned)], environment=_SKY)
 
 
 def _room(parts: Any, up: str) -> tuple[NDArray[np.float64], float, NDArray[np.float64]]:
@@ -119,16 +119,16 @@ def _room(parts: Any, up: str) -> tuple[NDArray[np.float64], float, NDArray[np.f
     return low / 2 + high / 2, float(np.linalg.norm(high / 2 - low / 2)) or 1.0, axes
 
 
-def _lamp(centre: NDArray[np.float64], radius: float, axes: NDArray[np.float64]) -> Mesh:
+def _lamp(center: NDArray[np.float64], radius: float, axes: NDArray[np.float64]) -> Mesh:
     beam = direction(_LAMP_ANGLES) @ axes
     side = np.cross(axes[1], beam) / np.linalg.norm(np.cross(axes[1], beam))
     # Spanned by `side` and its perpendicular, so that the normal is -beam: the square shines on the mesh.
-    middle = centre + _LAMP_DISTANCE * radius * beam
+    middle = center + _LAMP_DISTANCE * radius * beam
     return _square(middle, np.cross(beam, side), side, 1.5 * radius, Diffuse(0.0), 9.0)
 
 
 def _square(
-    centre: NDArray[np.float64],
+    center: NDArray[np.float64],
     a: NDArray[np.float64],
     b: NDArray[np.float64],
     half: float,
@@ -136,5 +136,5 @@ def _square(
     emission: float | None = None,
 ) -> Mesh:
     """Square with sides along unit vectors `a` and `b`; its normal is a x b."""
-    corners = [centre + half * (i * a + j * b) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    corners = [center + half * (i * a + j * b) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
     return Mesh(np.array(corners), [[0, 1, 2], [0, 2, 3]], material=material, emission=emission)

@@ -57,16 +57,16 @@ def diagonal_wall(boards: int = 800, angle: float = 45.0, layers: int = 4) -> li
     angle = math.radians(number("angle", angle))
     # Boards spread evenly: the first layers take one more if there is a remainder.
     counts = np.full(layers, boards // layers) + (np.arange(layers) < boards % layers)
-    centres, halves = np.zeros((boards, 3)), np.empty((boards, 3))
+    centers, halves = np.zeros((boards, 3)), np.empty((boards, 3))
     start = 0
     for layer, count in enumerate(counts.tolist()):
         mine = slice(start, start + count)
         across, along = layer % 2, 1 - layer % 2
-        centres[mine, across] = 10 * (np.arange(count) + 0.5) / count - 5
-        centres[mine, 2] = 4 * _THICK * (layer - (layers - 1) / 2)
+        centers[mine, across] = 10 * (np.arange(count) + 0.5) / count - 5
+        centers[mine, 2] = 4 * _THICK * (layer - (layers - 1) / 2)
         halves[mine, across], halves[mine, along], halves[mine, 2] = 2.5 / count, 5.0, _THICK
         start += count
-    vertices, faces = boxes(centres, halves)
+    vertices, faces = boxes(centers, halves)
     cosine, sine = math.cos(angle), math.sin(angle)
     turn = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
     return [Mesh(vertices @ turn.T, faces)]

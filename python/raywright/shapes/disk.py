@@ -19,7 +19,7 @@ class Disk(Shape):
     Parameters
     ----------
     center : 3 floats
-        Its centre.
+        Its center.
     normal : 3 floats
         Normal, towards the outer side; of any length but 0.
     radius : float
@@ -51,7 +51,7 @@ class Disk(Shape):
     Notes
     -----
     ``u`` is the angle about the normal, in turns; ``v`` runs from 0 at the rim to 1 at the hole or the
-    centre.
+    center.
 
     Examples
     --------

@@ -21,7 +21,7 @@ class Ellipsoid(Shape):
     Parameters
     ----------
     center : 3 floats
-        Its centre.
+        Its center.
     semi_axes : 3 floats
         Half its width along x, y and z, each greater than 0.
     transform : (4, 4) array, optional

@@ -47,7 +47,7 @@ class Mesh:
         Radiance in W·sr⁻¹·m⁻² that leaves the side of the geometric normal: one number, or red, green and
         blue. None, the default, for a mesh that does not shine.
     colors : (V, 3) array, optional
-        Linear red, green and blue, one colour a vertex, each between 0 and 1; the texture `VertexColors`
+        Linear red, green and blue, one color a vertex, each between 0 and 1; the texture `VertexColors`
         shows them.
     name : str, optional
         Name that `Hits.names` returns.
@@ -63,7 +63,7 @@ class Mesh:
     ------
     ValueError
         If an array has the wrong shape, a face index is negative or not below V (the error names the face), a
-        colour is not between 0 and 1 (the error names the vertex), or a cell is negative.
+        color is not between 0 and 1 (the error names the vertex), or a cell is negative.
     TypeError
         If an array has the wrong type, such as float faces.
 

@@ -1,6 +1,6 @@
 """All that becomes meshes: files, objects of other libraries, arrays, and lists and dicts of these.
 
-A library is never imported to recognise its objects: whoever made one has imported it.
+A library is never imported to recognize its objects: whoever made one has imported it.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ SOURCES = (
             ("cadquery", "Assembly", "of_assembly"),
             ("cadquery", "Workplane", "of_workplane"),
             ("cadquery", "Shape", "of_shape"),
-            ("build123d", "Shape", "of_labelled"),
+            ("build123d", "Shape", "of_labeled"),
             ("build123d", "Builder", "of_builder"),
             ("OCP.TopoDS", "TopoDS_Shape", "of_topology"),
         )

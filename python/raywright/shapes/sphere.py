@@ -14,7 +14,7 @@ from .shape import Shape
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Sphere(Shape):
-    """All points at one distance from a centre.
+    """All points at one distance from a center.
 
     Hits are exact, and `t` is correct to the last place, also for small and distant spheres: the discriminant
     is that of the ray's closest approach (Haines et al., "Precision Improvements for Ray/Sphere
@@ -23,7 +23,7 @@ class Sphere(Shape):
     Parameters
     ----------
     center : 3 floats
-        Its centre.
+        Its center.
     radius : float
         Distance of the surface from the center, greater than 0.
     transform : (4, 4) array, optional

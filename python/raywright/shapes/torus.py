@@ -22,12 +22,12 @@ class Torus(Shape):
     Parameters
     ----------
     center : 3 floats
-        Centre of the circle.
+        Center of the circle.
     axis : 3 floats
         Axis, at right angles to the circle's plane; of any length but 0.
     major_radius, minor_radius : float
         The circle's radius and the distance from it, each from 1e-140 to 1e140. The minor one is at most the
-        major one; where they are equal, the surface touches itself in the centre.
+        major one; where they are equal, the surface touches itself in the center.
     transform : (4, 4) array, optional
         An affine matrix that acts on column vectors (x, y, z, 1), from the shape's own space to the world.
         Rays are transformed to the shape's own space and rounded there once.

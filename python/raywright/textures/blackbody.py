@@ -13,10 +13,10 @@ from .spectrum import Spectrum
 
 def planck(wavelengths: NDArray[np.float64], kelvin: float) -> NDArray[np.float64]:
     """Return the radiance of a black body at wavelengths in nm (Planck, 1900), W·sr⁻¹·m⁻²·nm⁻¹."""
-    metres = wavelengths * 1e-9
+    meters = wavelengths * 1e-9
     # 2 h c², and h c over Boltzmann's constant (SI, 2019).
     with np.errstate(over="ignore"):
-        return 1e-9 * 1.1910429723971884e-16 / metres**5 / np.expm1(0.014387768775039337 / (metres * kelvin))
+        return 1e-9 * 1.1910429723971884e-16 / meters**5 / np.expm1(0.014387768775039337 / (meters * kelvin))
 
 
 @dataclass(frozen=True, init=False, repr=False)

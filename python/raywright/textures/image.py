@@ -28,7 +28,7 @@ class ImageTexture(Texture):
     Parameters
     ----------
     image : (H, W), (H, W, C) array, or path
-        Rows from the top, of 1 to 4 channels: a grey, grey and alpha, red, green and blue, or these and
+        Rows from the top, of 1 to 4 channels: a gray, gray and alpha, red, green and blue, or these and
         alpha. uint8 is kept as it is, float32 too; uint16 and other floats become float32. A path names a
         PNG, EXR, NPY or any other picture that Pillow reads.
     linear : bool
@@ -196,10 +196,10 @@ def _pixels(image: Any, linear: bool) -> NDArray[Any]:
     if array.ndim != 3 or not 1 <= array.shape[2] <= 4 or 0 in array.shape:
         raise ValueError(f"image must have shape (H, W) or (H, W, 1 to 4), got {given.shape}")
     if array.dtype.newbyteorder("=") == np.uint16:
-        colours = array.shape[2] - (array.shape[2] in (2, 4))
+        colors = array.shape[2] - (array.shape[2] in (2, 4))
         shares = array / 65535
         if not linear:
-            shares[..., :colours] = _from_srgb(shares[..., :colours])
+            shares[..., :colors] = _from_srgb(shares[..., :colors])
         array = shares.astype(np.float32)
     elif array.dtype != np.uint8:
         if array.dtype.kind != "f":

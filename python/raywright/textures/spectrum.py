@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..arrays import Triple, colour, number, real_array
+from ..arrays import Triple, color, number, real_array
 from .texture import Texture
 
 
@@ -136,7 +136,7 @@ class Spectrum(Texture):
         return red, green, blue
 
 
-def colour_or_spectrum(name: str, value: ArrayLike | Spectrum) -> Triple | Spectrum:
+def color_or_spectrum(name: str, value: ArrayLike | Spectrum) -> Triple | Spectrum:
     """Return a spectrum as it is, or one number or three as three floats, each finite and at least 0.
 
     Raises
@@ -146,4 +146,4 @@ def colour_or_spectrum(name: str, value: ArrayLike | Spectrum) -> Triple | Spect
     TypeError
         If they are not numbers.
     """
-    return value if isinstance(value, Spectrum) else colour(name, value)
+    return value if isinstance(value, Spectrum) else color(name, value)

@@ -73,7 +73,7 @@ def scalar(
 ) -> Number:
     """Return a texture as it is, or one number as a float; errors as those of `value`.
 
-    Of a texture with colours, the mean of the channels counts.
+    Of a texture with colors, the mean of the channels counts.
     """
     if isinstance(given, Texture):
         if not given._is_number:

@@ -1,4 +1,4 @@
-"""The colours of a mesh's vertices."""
+"""The colors of a mesh's vertices."""
 
 from __future__ import annotations
 

@@ -13,9 +13,9 @@ _EDGES = np.array([(i, i | 1 << bit) for i in range(8) for bit in range(3) if no
 _MOST = 20_000
 # Least distance of drawn lines, relative to the farthest: nearer ones have no place in the picture.
 _NEAREST = 1e-6
-# Extent of lines beyond the picture, in picture widths, and their colour.
+# Extent of lines beyond the picture, in picture widths, and their color.
 _BESIDE = 4.0
-_COLOUR = (255, 208, 0)
+_COLOR = (255, 208, 0)
 
 
 def check_flat(camera: AnyCamera) -> None:
@@ -89,7 +89,7 @@ def drawn(pixels: NDArray[np.uint8], lines: NDArray[np.float64]) -> NDArray[np.u
     image = Image.fromarray(pixels)
     draw = ImageDraw.Draw(image)
     for line in lines * image.size:
-        draw.line([tuple(end) for end in line.tolist()], fill=_COLOUR, width=1)
+        draw.line([tuple(end) for end in line.tolist()], fill=_COLOR, width=1)
     return np.asarray(image)
 
 

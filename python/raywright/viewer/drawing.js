@@ -274,8 +274,8 @@ export class Drawing {
   }
 
   aim(width, height, more = {}) {
-    const { centre, scale, orbit, lamp, behind, tone } = this.told;
-    const local = (point) => times(minus(point, centre), scale);
+    const { center, scale, orbit, lamp, behind, tone } = this.told;
+    const local = (point) => times(minus(point, center), scale);
     const { origins, ways } = spread(orbit, this.view);
     const [corner, ...sides] = origins;
     const inBox = [local(corner), ...sides.map((side) => times(side, scale))];

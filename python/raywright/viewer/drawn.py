@@ -90,7 +90,7 @@ class Drawn:
                 "arrays": {name: len(data) for name, data in self._arrays.items()},
                 "nodes": flat.own,
                 "depth": flat.depth,
-                "centre": flat.center.tolist(),
+                "center": flat.center.tolist(),
                 "scale": flat.scale,
                 "orbit": self._orbit.told(),
                 "lamp": lamp(self._scene, self._orbit.camera(View())),

@@ -100,7 +100,7 @@ fn inverse(brightness: vec3<f32>) -> vec3<f32> {
     return 1.0 / (brightness * brightness + FLOOR);
 }
 
-// The same for a pixel, with its four neighbours.
+// The same for a pixel, with its four neighbors.
 fn likely_inverse(its: Spread, x: u32, y: u32, own: vec3<f32>) -> vec3<f32> {
     let a = mean_of(select(x, x - 1u, x > 0u), y);
     let b = mean_of(min(x + 1u, size.x - 1u), y);

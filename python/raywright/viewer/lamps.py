@@ -1,4 +1,4 @@
-"""Light while the camera moves: of all lamps one, for one shadow ray a pixel, and one colour of the sky."""
+"""Light while the camera moves: of all lamps one, for one shadow ray a pixel, and one color of the sky."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..shapes.mesh import Mesh
 
 # Direction to the lamp, over the viewer's right shoulder.
 _RIGHT, _UP = 0.5, 0.8
-# A clear sky, if its colours are unknown.
+# A clear sky, if its colors are unknown.
 _SKY = (0.25, 0.4, 0.65)
 
 

@@ -3,7 +3,7 @@
 // Eight corners of each box.
 @group(1) @binding(0) var<storage, read> corners: array<f32>;
 
-const COLOUR = vec4<f32>(1.0, 0.8157, 0.0, 1.0);
+const COLOR = vec4<f32>(1.0, 0.8157, 0.0, 1.0);
 
 @vertex
 fn edge(@builtin(vertex_index) i: u32, @builtin(instance_index) box: u32) -> @builtin(position) vec4<f32> {
@@ -25,5 +25,5 @@ fn edge(@builtin(vertex_index) i: u32, @builtin(instance_index) box: u32) -> @bu
 
 @fragment
 fn line() -> @location(0) vec4<f32> {
-    return COLOUR;
+    return COLOR;
 }

@@ -1,4 +1,4 @@
-"""One colour for each primitive, for pictures that are drawn while the camera moves."""
+"""One color for each primitive, for pictures that are drawn while the camera moves."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from ..query.gpu_arrays import GpuArrays
 from ..shapes.mesh import Mesh
 
-# Attributes with a material's colour, the first present one counts.
-_COLOURS = ("reflectance", "base_color", "diffuse", "transmittance")
+# Attributes with a material's color, the first present one counts.
+_COLORS = ("reflectance", "base_color", "diffuse", "transmittance")
 _PARTS = ("material", "front", "a")
-_GREY = (0.7, 0.7, 0.7)
+_GRAY = (0.7, 0.7, 0.7)
 # Value of the fourth byte: emitting surfaces are not shaded.
 _SHINES = 255
 
@@ -39,7 +39,7 @@ def paints(shapes: Sequence[Any], flat: GpuArrays) -> NDArray[np.uint32]:
     rows = np.zeros((max(int(first[-1]), 1), 4), np.uint8)
     for shape, begin, end in zip(shapes, first[:-1], first[1:], strict=True):
         shines = isinstance(shape, Mesh) and shape.emission is not None
-        rows[begin:end, :3] = np.clip(np.round(255 * np.array(_colour(shape))), 0, 255)
+        rows[begin:end, :3] = np.clip(np.round(255 * np.array(_color(shape))), 0, 255)
         rows[begin:end, 3] = _SHINES * shines
     packed = np.zeros((len(rows), 2), "<u4")
     packed[:, 0] = rows.view("<u4")[:, 0]
@@ -59,20 +59,20 @@ def _folded(triangles: NDArray[np.void]) -> NDArray[np.uint32]:
     return np.ascontiguousarray(both).view("<u4")[:, 0]
 
 
-def _colour(shape: Any) -> NDArray[np.float64]:
+def _color(shape: Any) -> NDArray[np.float64]:
     material, seen = getattr(shape, "material", None), 0
     while material is not None and seen < 4:
-        for name in _COLOURS:
+        for name in _COLORS:
             value = _three(getattr(material, name, None))
             if value is not None:
                 return value
         inner = (getattr(material, name, None) for name in _PARTS)
         material, seen = next((one for one in inner if one is not None), None), seen + 1
-    return np.array(_GREY)
+    return np.array(_GRAY)
 
 
 def _three(value: Any) -> NDArray[np.float64] | None:
-    """Return three numbers of a colour, if it is one; of an image the mean."""
+    """Return three numbers of a color, if it is one; of an image the mean."""
     if value is None or isinstance(value, bool | str):
         return None
     try:

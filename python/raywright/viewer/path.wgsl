@@ -49,13 +49,13 @@ fn numbers_drawn() -> vec4<f32> {
 }
 
 // Light from a light sample, scattered at a surface back along the ray.
-fn asked_for(at: Surface, its: Material, colour: vec3<f32>) -> vec3<f32> {
+fn asked_for(at: Surface, its: Material, color: vec3<f32>) -> vec3<f32> {
     let u = numbers_drawn();
     let arriving = from_lights(at.position, u.x, u.yz);
     if arriving.pdf == 0.0 {
         return vec3<f32>(0.0);
     }
-    let by = scattered_at(at, its, colour, arriving.direction);
+    let by = scattered_at(at, its, color, arriving.direction);
     if !(most(by.value) > 0.0) {
         return vec3<f32>(0.0);
     }
@@ -97,12 +97,12 @@ fn traced(first: Ray) -> vec3<f32> {
             break;
         }
         let its = material_at(at);
-        let colour = colour_at(its, at.uv);
+        let color = color_at(its, at.uv);
         if !is_single(its) {
-            light += throughput * asked_for(at, its, colour);
+            light += throughput * asked_for(at, its, color);
         }
         let u = numbers_drawn();
-        let next = drawn_at(at, its, colour, u.x, u.yz);
+        let next = drawn_at(at, its, color, u.x, u.yz);
         if next.pdf == 0.0 {
             break;
         }

@@ -6,7 +6,7 @@ fn whole(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-// From unbounded light to linear colours of a screen, as in io/tone.py.
+// From unbounded light to linear colors of a screen, as in io/tone.py.
 fn toned(rgb: vec3<f32>) -> vec3<f32> {
     let light = min(max(rgb, vec3<f32>(0.0)) * look.size.z, vec3<f32>(1e15));
     if look.mode.y == 1u {

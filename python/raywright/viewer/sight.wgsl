@@ -24,7 +24,7 @@ struct Look {
 
 @group(0) @binding(0) var<storage, read> nodes: array<Node>;
 @group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
-// For each primitive a colour, whose last byte is 255 if it emits, and its normal on an octahedron.
+// For each primitive a color, whose last byte is 255 if it emits, and its normal on an octahedron.
 @group(0) @binding(2) var<storage, read> paints: array<vec2<u32>>;
 @group(0) @binding(3) var<uniform> look: Look;
 
@@ -63,15 +63,15 @@ fn unfolded(packed: u32) -> vec3<f32> {
 const BY_LAMP: f32 = 0.8;
 const BY_ALL: f32 = 0.2;
 
-// The light along a ray of a picture in movement: one colour per shape, one lamp and its shadow. It ignores the
+// The light along a ray of a picture in movement: one color per shape, one lamp and its shadow. It ignores the
 // radiance of lamps, and so has no exposure.
 fn sketched(ray: Ray, met: Met) -> vec3<f32> {
     if met.face == NOBODY {
         return look.behind.xyz;
     }
     let paint = paints[met.face];
-    let colour = unpack4x8unorm(paint.x);
-    if colour.w > 0.5 {
+    let color = unpack4x8unorm(paint.x);
+    if color.w > 0.5 {
         return vec3<f32>(1.0);
     }
     var normal = unfolded(paint.y);
@@ -93,7 +93,7 @@ fn sketched(ray: Ray, met: Met) -> vec3<f32> {
             light += BY_LAMP * facing;
         }
     }
-    return colour.xyz * light;
+    return color.xyz * light;
 }
 
 // From black by blue, green and yellow to white, with rising brightness.

@@ -203,7 +203,7 @@ def test_values_are_kept_as_plain_python():
         (
             {"optimize": ("treelet", "treelet")},
             ValueError,
-            r"optimize must name each optimiser at most once, got \('treelet', 'treelet'\)",
+            r"optimize must name each optimizer at most once, got \('treelet', 'treelet'\)",
         ),
         ({"traversal_cost": 0}, ValueError, r"traversal_cost must be greater than 0, got 0"),
     ],

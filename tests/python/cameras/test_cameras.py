@@ -123,7 +123,7 @@ def test_a_shifted_lens_sees_what_a_shifted_pinhole_does():
 
 
 def test_f_stops_and_focal_lengths_are_those_of_photography():
-    # 50 mm at f/2 before a sensor of 24 mm, in metres: a lens of 25 mm, and an angle of 27 degrees.
+    # 50 mm at f/2 before a sensor of 24 mm, in meters: a lens of 25 mm, and an angle of 27 degrees.
     camera = rw.ThinLens(EYE, AT, f_stop=2, focal_length=0.05)
     assert camera.lens_radius == pytest.approx(0.0125, rel=1e-15)
     angle = np.degrees(2 * np.arctan(12 / 50))

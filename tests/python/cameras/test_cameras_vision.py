@@ -44,16 +44,16 @@ def projected(K, R, t, point):
 
 
 @pytest.mark.parametrize("K", MATRICES.values(), ids=MATRICES)
-@pytest.mark.parametrize("pixel_centre", [0.0, 0.5])
-def test_a_ray_goes_through_the_points_that_its_pixel_shows(K, pixel_centre):
+@pytest.mark.parametrize("pixel_center", [0.0, 0.5])
+def test_a_ray_goes_through_the_points_that_its_pixel_shows(K, pixel_center):
     R = rotation()
-    camera = rw.Camera.from_intrinsics(K, R, SHIFT, 320, 240, pixel_centre=pixel_centre)
+    camera = rw.Camera.from_intrinsics(K, R, SHIFT, 320, 240, pixel_center=pixel_center)
     rng = np.random.default_rng(3)
     # In front of the camera, and slightly beside the picture too.
     for before in rng.uniform((-1, -1, 2), (1, 1, 9), (40, 3)):
         point = R.T @ (before * (before[2], before[2], 1) * (0.4, 0.3, 1) - SHIFT)
         u, v = projected(K, R, SHIFT, point)
-        shift = Fraction(0.5 - pixel_centre)
+        shift = Fraction(0.5 - pixel_center)
         origin, direction = camera.rays_through((float(u + shift), float(v + shift)))
         towards = point - origin
         assert np.linalg.norm(np.cross(towards, direction)) < 1e-12 * np.linalg.norm(towards)
@@ -70,7 +70,7 @@ def test_points_are_projected_where_rays_go_through(K):
     origins, ways = camera.rays_through(points)
     there = origins + np.geomspace(0.1, 1e4, 40).reshape(5, 8, 1) * ways
     assert np.abs(camera.project(there) - points).max() < 1e-9
-    # OpenCV counts from the centre of the first pixel.
+    # OpenCV counts from the center of the first pixel.
     u, v = projected(K, R, SHIFT, there[2, 3])
     assert np.allclose(camera.project(there[2, 3]), (float(u) + 0.5, float(v) + 0.5), rtol=0, atol=1e-9)
     behind = origins - ways
@@ -98,7 +98,7 @@ def test_only_points_are_projected():
         rw.Camera((0, 0, 5), (0, 0, 0)).project((1, 2))
 
 
-def test_the_first_pixel_of_opencv_has_its_centre_at_0():
+def test_the_first_pixel_of_opencv_has_its_center_at_0():
     K = MATRICES["plain"]
     camera = rw.Camera.from_intrinsics(K, np.eye(3), np.zeros(3), 320, 240)
     _, directions = camera.rays()
@@ -185,7 +185,7 @@ def test_a_matrix_that_mirrors_mirrors_the_picture():
     st.sampled_from([0.0, 0.5, 20.0, -90.0]),
     st.booleans(),
 )
-def test_what_is_rasterised_is_what_rays_hit(seed, focal, principal, skew, mirror):
+def test_what_is_rasterized_is_what_rays_hit(seed, focal, principal, skew, mirror):
     rng = np.random.default_rng(seed)
     corners = rng.uniform(-1, 1, (30, 1, 3)) + rng.normal(size=(30, 3, 3)) * 0.4
     scene = rw.Scene(rw.Mesh(corners.reshape(-1, 3), np.arange(90).reshape(-1, 3)))

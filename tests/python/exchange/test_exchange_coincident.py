@@ -64,7 +64,7 @@ def test_faces_that_overlap_in_part_are_told() -> None:
         rw.view_factors(rw.Scene([CLOSED, beside]), progress=False)
 
 
-def test_neighbours_and_the_other_side_do_not_coincide() -> None:
+def test_neighbors_and_the_other_side_do_not_coincide() -> None:
     back = rw.Mesh(CLOSED.vertices, CLOSED.faces[:, ::-1])
     found = rw.view_factors(rw.Scene([CLOSED, back]), progress=False)
     np.testing.assert_allclose(found.to_surroundings[:12], 0, atol=1e-9)
@@ -211,10 +211,10 @@ def test_a_sheet_that_shines_on_both_sides_sends_as_much_as_one_face() -> None:
 
 def test_sides_of_a_sheet_keep_their_temperatures() -> None:
     walls = room(0.6, (0,) * 6).shapes
-    kelvin, grey = [300.0] * 6 + [400.0, 350.0], [0.9] * 6 + [0.8, 0.6]
+    kelvin, gray = [300.0] * 6 + [400.0, 350.0], [0.9] * 6 + [0.8, 0.6]
     found, apart = (
         rw.radiative_exchange(
-            rw.Scene([*walls, *sheets(low)]), kelvin, grey, rays=2**16, sides="both", progress=False
+            rw.Scene([*walls, *sheets(low)]), kelvin, gray, rays=2**16, sides="both", progress=False
         )
         for low in (0.5, 0.4999)
     )

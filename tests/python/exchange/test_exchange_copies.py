@@ -45,7 +45,7 @@ def test_view_factors_of_copies_are_those_of_moved_meshes() -> None:
     )
 
 
-def test_rooms_within_rooms_have_the_catalogue_s_factors() -> None:
+def test_rooms_within_rooms_have_the_catalog_s_factors() -> None:
     # A box whose sides are copies of copies of one square: C-11 and C-14 of Howell.
     unit = rectangle((0, 0, 0), (1, 0, 0), (0, 1, 0))
     turned = [side.vertices[[0, 2, 1]] for side in inward_box()]

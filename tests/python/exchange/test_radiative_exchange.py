@@ -47,8 +47,8 @@ def test_two_plates() -> None:
 
 @pytest.mark.parametrize("method", ["matrix", "stochastic"])
 def test_arrays_belong_to_the_caller(method: str) -> None:
-    kelvin, grey = np.full(2, 300.0), np.full(2, 0.5)
-    found = exchanged(rw.Scene(square(0.5, True)), kelvin, grey, method=method, rays=2**8)
+    kelvin, gray = np.full(2, 300.0), np.full(2, 0.5)
+    found = exchanged(rw.Scene(square(0.5, True)), kelvin, gray, method=method, rays=2**8)
     back = pickle.loads(pickle.dumps(found))
     assert back == found
     # torch warns of what cannot be written to; numbers of shapes and faces alone are read-only.
@@ -57,7 +57,7 @@ def test_arrays_belong_to_the_caller(method: str) -> None:
     for name, array in arrays.items():
         if name != "patches":
             array[:] = -1.0
-    assert (kelvin.min(), grey.min()) == (300.0, 0.5)
+    assert (kelvin.min(), gray.min()) == (300.0, 0.5)
     assert back.areas.min() > 0
 
 

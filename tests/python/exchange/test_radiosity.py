@@ -364,7 +364,7 @@ def test_a_solution_travels() -> None:
 
 
 @pytest.mark.parametrize("ending", ["ply", "glb", "obj"])
-def test_a_solution_is_saved_as_a_coloured_mesh(tmp_path: Any, ending: str) -> None:
+def test_a_solution_is_saved_as_a_colored_mesh(tmp_path: Any, ending: str) -> None:
     scene, _ = rw.scenes.cornell_box()
     found = solved(scene, per="vertex", rays=2**14, patch_size=300.0)
     path = tmp_path / f"room.{ending}"
@@ -372,8 +372,8 @@ def test_a_solution_is_saved_as_a_coloured_mesh(tmp_path: Any, ending: str) -> N
     mesh = trimesh.load(path, force="mesh", process=False)
     assert len(mesh.faces) == len(found)
     assert mesh.visual.kind == "vertex"
-    colours = np.asarray(mesh.visual.vertex_colors)[:, :3]
-    assert colours.max() == 255
+    colors = np.asarray(mesh.visual.vertex_colors)[:, :3]
+    assert colors.max() == 255
     np.testing.assert_allclose(mesh.area, found.areas.sum(), rtol=1e-5)
     with pytest.raises(ValueError, match=r"path must end in"):
         found.save(tmp_path / "room.png")

@@ -1,4 +1,4 @@
-"""View factors of curved surfaces, elements and tubes against Howell's catalogue and Hottel's strings.
+"""View factors of curved surfaces, elements and tubes against Howell's catalog and Hottel's strings.
 
 What is sampled is within three standard errors, each of at most 0.2 %. Seeds are fixed, so that a test that
 passes goes on passing; of another stream, 1 of 100 would be farther off, as few batches tell errors.
@@ -92,7 +92,7 @@ def above_or_cut(h: float, degrees: float) -> float:
     return first + (math.cos(t) * math.acos(-q / math.tan(t)) - q * cut) / (math.pi * h * h)
 
 
-def test_the_horizon_of_an_element_is_as_the_catalogue_has_it() -> None:
+def test_the_horizon_of_an_element_is_as_the_catalog_has_it() -> None:
     assert above_or_cut(1.5, 80) == pytest.approx(0.117488949858507, rel=1e-11)
     assert above_or_cut(1.0001, 60) == pytest.approx(0.742153797432516, rel=1e-11)
 

@@ -38,7 +38,7 @@ def quad(corner, across, up, **look):
     return rw.Mesh(points, [(0, 1, 2), (0, 2, 3)], uv=[(0, 0), (1, 0), (1, 1), (0, 1)], **look)
 
 
-def ball(centre, material, radius=1.0, rows=12):
+def ball(center, material, radius=1.0, rows=12):
     """Return a sphere of faces with the normals of a round one."""
     theta, phi = np.linspace(0, np.pi, rows + 1), np.linspace(0, 2 * np.pi, 2 * rows + 1)
     sine, turn = np.sin(theta)[:, None], phi[None, :]
@@ -47,7 +47,7 @@ def ball(centre, material, radius=1.0, rows=12):
     a = (np.arange(rows)[:, None] * (2 * rows + 1) + np.arange(2 * rows)).reshape(-1)
     b, c, d = a + 2 * rows + 1, a + 2 * rows + 2, a + 1
     faces = np.concatenate([np.stack([a, b, c], 1)[: len(a) - 2 * rows], np.stack([a, c, d], 1)[2 * rows :]])
-    return rw.Mesh(points * radius + centre, faces, normals=points, material=material)
+    return rw.Mesh(points * radius + center, faces, normals=points, material=material)
 
 
 def floor(material):

@@ -27,12 +27,12 @@ def camera(at=(3, -2, 2.5), target=(0, 0, 0.3), fov=40, side=SIDE):
     return rw.Camera(at, target, up=(0, 0, 1), fov=fov, width=side, height=side)
 
 
-def ball(divisions, material, centre=(0, 0, 0.6), radius=0.6):
+def ball(divisions, material, center=(0, 0, 0.6), radius=0.6):
     """A ball of few triangles with the normals of a sphere."""
     trimesh = pytest.importorskip("trimesh")
     sphere = trimesh.creation.icosphere(divisions, radius)
     normals = sphere.vertices / np.linalg.norm(sphere.vertices, axis=1, keepdims=True)
-    return rw.Mesh(sphere.vertices + centre, sphere.faces, normals=normals, material=material)
+    return rw.Mesh(sphere.vertices + center, sphere.faces, normals=normals, material=material)
 
 
 def behind_glass():
@@ -40,9 +40,9 @@ def behind_glass():
     trimesh = pytest.importorskip("trimesh")
     glass = rw.Dielectric(1.5)
 
-    def block(extents, centre):
+    def block(extents, center):
         box = trimesh.creation.box(extents)
-        return rw.Mesh(box.vertices + centre, box.faces, material=glass)
+        return rw.Mesh(box.vertices + center, box.faces, material=glass)
 
     floor = square(1.5, 0.0, material=rw.Diffuse((0.7, 0.5, 0.3)))
     lamp = square(0.25, 1.2, up=False, material=rw.Diffuse(0), emission=8)

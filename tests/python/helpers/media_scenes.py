@@ -33,7 +33,7 @@ def looking(cosine=1.0, side=8, below=False, distance=0.5, azimuth=0.0):
 
 
 def seen(scene, camera, samples, integrator=None, seed=0):
-    """Mean of a picture of one colour, and its standard error, from pixels that are independent."""
+    """Mean of a picture of one color, and its standard error, from pixels that are independent."""
     alone = integrator or rw.Path(reuse=1)
     image = rw.render(scene, camera, alone, samples, seed=seed, progress=False)
     values = image.rgb.astype(float)[..., 1].ravel()

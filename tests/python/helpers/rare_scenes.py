@@ -6,7 +6,7 @@ import numpy as np
 
 import raywright as rw
 
-GREY = rw.Diffuse(0.6)
+GRAY = rw.Diffuse(0.6)
 BLACK = rw.Diffuse(0.0)
 EYE = (0.4, 0.4, 1.7)
 
@@ -27,7 +27,7 @@ def _room(low, high, without):
                 corner[(axis + 1) % 3] = (low, high)[a][(axis + 1) % 3]
                 corner[(axis + 2) % 3] = (low, high)[b][(axis + 2) % 3]
                 corners.append(corner)
-            walls.append(_quad(*corners, material=GREY))
+            walls.append(_quad(*corners, material=GRAY))
     return walls
 
 
@@ -35,7 +35,7 @@ def _wall_with_hole(low, high):
     """The wall of a room of 4 by 4 by 3 at x = 4, open between two corners in y and z."""
     (y, z), (v, w) = low, high
     parts = [((0, 0), (4, z)), ((0, w), (4, 3)), ((0, z), (y, w)), ((v, z), (4, w))]
-    return [_quad((4, a, b), (4, c, b), (4, c, d), (4, a, d), material=GREY) for (a, b), (c, d) in parts]
+    return [_quad((4, a, b), (4, c, b), (4, c, d), (4, a, d), material=GRAY) for (a, b), (c, d) in parts]
 
 
 def _camera(target, fov, side):
@@ -71,7 +71,7 @@ def small_lamp(side):
 
 
 def many_lamps(side):
-    """A hundred lamps of all colours in a room, each smaller than a pixel."""
+    """A hundred lamps of all colors in a room, each smaller than a pixel."""
     rng = np.random.default_rng(1)
     lamps = [
         rw.Sphere(tuple(place), 0.015, material=BLACK, emission=tuple(rng.uniform(20, 100, 3)))

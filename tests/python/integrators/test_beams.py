@@ -118,10 +118,10 @@ def test_two_mirrors_and_symmetry():
     assert sums[0] < 0.9 * sums[1] < 0.9 * sums[2]
 
 
-def turned(mesh, degrees, centre):
+def turned(mesh, degrees, center):
     sine, cosine = np.sin(np.radians(degrees)), np.cos(np.radians(degrees))
     turn = np.array([[cosine, 0, sine], [0, 1, 0], [-sine, 0, cosine]])
-    return rw.Mesh((np.asarray(mesh.vertices) - centre) @ turn.T + centre, mesh.faces, material=mesh.material)
+    return rw.Mesh((np.asarray(mesh.vertices) - center) @ turn.T + center, mesh.faces, material=mesh.material)
 
 
 def behind_glass(glass):

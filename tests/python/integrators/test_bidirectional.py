@@ -151,7 +151,7 @@ def test_depths_count_bounces(depth):
     assert_same_picture(scene, look, depth=depth)
 
 
-def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
+def hollow(aperture, *, center=0.0, up=True, rings=96, **kwargs):
     """A sphere of radius 1 that faces inwards, less the cap beyond a circle about the top, or the bottom."""
     start = math.asin(aperture)
     polar = start + np.linspace(0, 1, rings) ** 1.5 * (math.pi - start)
@@ -165,7 +165,7 @@ def hollow(aperture, *, centre=0.0, up=True, rings=96, **kwargs):
     faces = np.concatenate(
         [np.stack(three, -1).reshape(-1, 3) for three in [(a[:-1], c[:-1], b[:-1]), (a, d, c)]]
     )
-    vertices = np.stack([x, y, z + centre], -1).reshape(-1, 3)
+    vertices = np.stack([x, y, z + center], -1).reshape(-1, 3)
     return rw.Mesh(vertices, faces if up else faces[:, ::-1], **kwargs)
 
 
@@ -222,7 +222,7 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
     bounce = np.array([[rho[0] * (1 - s), rho[0] * s], [rho[1] * s, rho[1] * (1 - s)]])
     np.testing.assert_allclose(np.linalg.solve(np.eye(2) - bounce, [1, 0]), expected, rtol=1e-12)
     first = hollow(aperture, material=rw.Diffuse(rho[0]), emission=1 / math.pi)
-    second = hollow(aperture, centre=2 * rim, up=False, material=rw.Diffuse(rho[1]))
+    second = hollow(aperture, center=2 * rim, up=False, material=rw.Diffuse(rho[1]))
     scene = rw.Scene([first, second])
     # By photons, to each depth: a share of the light that arrives at a wall after that many bounces is
     # reflected. The small hole needs twice as many, or too few pass it.
@@ -251,8 +251,8 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
         assert (off < 3 * error[:, k] + 1e-3 * truth + 1e-12).all(), (k, mean[:, k], truth)
     # By connections, the picture of either; through the small hole they do not resolve the other.
     for chamber in range(2 if aperture > 0.1 else 1):
-        centre = 2 * rim * chamber
-        look = rw.Camera((0.1, 0.2, centre), (1, 0.3, centre), up=(0, 0, 1), fov=60, width=16, height=16)
+        center = 2 * rim * chamber
+        look = rw.Camera((0.1, 0.2, center), (1, 0.3, center), up=(0, 0, 1), fov=60, width=16, height=16)
         for depth in (1, 2, None):
             image = rw.render(scene, look, rw.Bidirectional(depth), 64, progress=False)
             radiosity = expected if depth is None else np.add([1, 0], sum(of_depth[:depth]))
@@ -308,7 +308,7 @@ def test_a_tiny_lamp():
 
 
 def test_a_lamp_close_to_a_surface():
-    # A thousandth above the floor: a power of pi falls on a few square millimetres, where camera paths hardly
+    # A thousandth above the floor: a power of pi falls on a few square millimeters, where camera paths hardly
     # ever go. A reflectance of 0.6 reflects 0.6 of it along the normal per solid angle.
     scene = rw.Scene([square(3, 0, material=rw.Diffuse(0.6)), bulb(1e-3, up=False)])
     at = np.array([3.0, -2.0, 2.5])
@@ -316,7 +316,7 @@ def test_a_lamp_close_to_a_surface():
     image = rw.render(scene, camera(at, (0, 0, 0)), rw.Bidirectional(1), 400, progress=False)
     # The picture takes (2 tan 20 degrees)^2 at distance 1.
     expected = 0.6 * (at[2] / far) / (2 * far * math.tan(math.radians(20))) ** 2
-    # A few square millimetres are no point, and one part in a thousand falls 3 cm away or farther.
+    # A few square millimeters are no point, and one part in a thousand falls 3 cm away or farther.
     assert_mean(image, expected, 0.002, off=1e-3)
 
 

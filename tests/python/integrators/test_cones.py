@@ -41,10 +41,10 @@ CAPS = [
 def test_a_cone_sees_of_a_sphere_what_caps_share(degrees, solid_angle, share):
     _, ball, between = np.radians(degrees)
     # Ten away; the sine is that of the sphere's half angle.
-    centre = 10 * np.array([np.sin(between), 0, np.cos(between)])
-    scene = rw.Scene([rw.Sphere(centre, 10 * np.sin(ball))])
+    center = 10 * np.array([np.sin(between), 0, np.cos(between)])
+    scene = rw.Scene([rw.Sphere(center, 10 * np.sin(ball))])
     found = scene.cone_coverage((0, 0, 0), (0, 0, 3), degrees[0])
-    # The angle between comes back from the centre's coordinates within 2e-16, which moves the smallest cone's
+    # The angle between comes back from the center's coordinates within 2e-16, which moves the smallest cone's
     # share by 2e-11 of itself.
     assert found.solid_angle == pytest.approx(solid_angle, rel=1e-8)
     assert found.share == pytest.approx(share, rel=1e-8)
@@ -195,7 +195,7 @@ def test_cones_see_no_moire_in_a_chequered_floor():
     cones = look(scene, camera, rw.integrators.ConeTraced(ambient=1.0)).rgb[..., 0].astype(float)
     rays = look(scene, camera, rw.Whitted(ambient=1.0), samples=256).rgb[..., 0]
     lit = rays > 0.05
-    # In the far rows all squares blur into grey, and rows have the mean.
+    # In the far rows all squares blur into gray, and rows have the mean.
     assert np.abs(cones.mean(1) - rays.mean(1)).max() < 0.08
     assert abs(cones[lit].mean() - rays[lit].mean()) < 0.02
 

@@ -120,7 +120,7 @@ def test_interactions_tell_of_hits_and_misses():
     assert np.array_equal(here.emission, [(3.0,) * 3, (0.25,) * 3])
     assert np.array_equal(here.normal[0], here.shading_normal[0])
     assert not here.t.flags.writeable
-    # Lambert's law: half grey over pi, times the cosine, and drawn by that.
+    # Lambert's law: half gray over pi, times the cosine, and drawn by that.
     value, pdf = here.evaluate([(0, 0.6, 0.8), (0, 0, 1)])
     assert value[0] == pytest.approx(0.5 * 0.8 / np.pi)
     assert pdf[0] == pytest.approx(0.8 / np.pi)

@@ -30,7 +30,7 @@ def box(width=24, height=24):
 
 
 def room(*more):
-    """Grey walls around the origin, a lamp under the ceiling, and what else; seen from within."""
+    """Gray walls around the origin, a lamp under the ceiling, and what else; seen from within."""
     walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse((0.7, 0.5, 0.3)))
     x, y = 0.4, 0.95
     corners = [(-x, y, -x), (x, y, -x), (x, y, x), (-x, y, x)]

@@ -243,7 +243,7 @@ def test_what_moves_is_lit_at_its_time():
 def test_gold_at_both_ends_gives_no_more_than_there_is(way):
     # Gold reflects more red than Rec. 709 can represent. All gold on a path is clipped to that, except at the
     # vertex nearest to the eye, where photons meet paths, too. A floor seen in gold, and lit by way of gold,
-    # has the colour of paths: it hardly depends on angles, and so hardly has noise.
+    # has the color of paths: it hardly depends on angles, and so hardly has noise.
     floor = square(1.5, 0.0, material=rw.Diffuse(0.5))
     gold = rw.Mesh(
         [(1.2, -2, 0), (1.2, 2, 0), (1.2, 2, 3), (1.2, -2, 3)],

@@ -48,8 +48,8 @@ def test_textures_are_those_of_the_scene_and_the_sky_is_behind() -> None:
     found = rw.radiosity(scene, rays=4096, progress=False)
     above = rw.Camera((0.5, 0.5, 2), (0.5, 0.5, 0), up=(0, 1, 0), fov=35, width=40, height=40)
     picture = rw.render(scene, above, rw.Radiosity(found), 1, progress=False).rgb[..., 0]
-    colours = np.unique(np.round(picture, 5))
-    np.testing.assert_allclose(colours, [0, 0.4 / np.pi, 1.6 / np.pi], atol=2e-5)
+    colors = np.unique(np.round(picture, 5))
+    np.testing.assert_allclose(colors, [0, 0.4 / np.pi, 1.6 / np.pi], atol=2e-5)
 
 
 def test_backs_are_black_where_fronts_alone_take_part() -> None:

@@ -11,7 +11,7 @@ import raywright as rw
 from raywright import _core
 
 NM = np.arange(360.0, 831.0)
-# Colours of daylight of each nm alone; the core's own table, which has tests of its own.
+# Colors of daylight of each nm alone; the core's own table, which has tests of its own.
 SEEN = np.array(
     [_core.spectrum_rgb([[nm - 1, 0.0], [nm, 1.0], [nm + 1, 0.0]], True) for nm in NM],
 )
@@ -32,12 +32,12 @@ FINELY = 0.002
 
 
 def daylit(share):
-    """The colour of shares of daylight, by an integral in steps of 1 nm."""
+    """The color of shares of daylight, by an integral in steps of 1 nm."""
     return SEEN.T @ np.broadcast_to(share, NM.shape)
 
 
 def looked(scene, camera, samples, integrator=None, seed=0):
-    """Mean of a picture of one colour, and the standard error of each channel, from independent pixels."""
+    """Mean of a picture of one color, and the standard error of each channel, from independent pixels."""
     image = rw.render(scene, camera, integrator or rw.Path(), samples, seed=seed, progress=False)
     values = image.rgb.astype(float).reshape(-1, 3)
     return values.mean(axis=0), values.std(axis=0, ddof=1) / math.sqrt(len(values))
@@ -60,7 +60,7 @@ def check(scene, camera, samples, expected, integrator, most, finely):
 
 @pytest.fixture(params=[False, pytest.param(True, marks=pytest.mark.slow)], ids=["quickly", "finely"])
 def assert_looks(request):
-    """What checks a picture of one colour, to half a hundredth or some hundredths; slowly, to `FINELY`."""
+    """What checks a picture of one color, to half a hundredth or some hundredths; slowly, to `FINELY`."""
 
     def looks(scene, camera, samples, expected, integrator=None, most=0.002):
         check(scene, camera, samples, expected, integrator, most, request.param)
@@ -81,13 +81,13 @@ def plate(material=None, emission=None):
 
 def test_even_light_is_reddish_and_daylight_white(assert_looks):
     nothing = rw.Box((50, 50, 50), (51, 51, 51))
-    for light, colour in [
+    for light, color in [
         (rw.textures.illuminants["E"], EVEN),
         (rw.textures.illuminants["D65"], (1, 1, 1)),
         (2 * rw.textures.illuminants["A"], 2 * np.array(rw.textures.illuminants["A"].rgb)),
         (rw.Blackbody(3000), rw.Blackbody(3000).rgb),
     ]:
-        assert_looks(rw.Scene(nothing, environment=light), downwards(16), 64, np.array(colour), most=0.005)
+        assert_looks(rw.Scene(nothing, environment=light), downwards(16), 64, np.array(color), most=0.005)
 
 
 def test_all_that_glass_does_to_white_light_is_white(assert_looks):
@@ -119,7 +119,7 @@ def deviation(index, incidence=50.0, angle=60.0):
 
 
 def transmittance(index, incidence=50.0, angle=60.0):
-    """What light loses at neither face, unpolarised at both."""
+    """What light loses at neither face, unpolarized at both."""
     i, a = math.radians(incidence), math.radians(angle)
     inside = np.arcsin(np.sin(i) / index)
     second = a - inside
@@ -172,7 +172,7 @@ def test_a_prism_deviates_each_wavelength_as_computed(assert_looks, line, truth)
 
 
 def reflectance(incidence, index):
-    """Fresnel's, of unpolarised light, by the index beyond over that before."""
+    """Fresnel's, of unpolarized light, by the index beyond over that before."""
     inside = np.arcsin(np.sin(incidence) / index)
     s = (np.cos(incidence) - index * np.cos(inside)) / (np.cos(incidence) + index * np.cos(inside))
     p = (index * np.cos(incidence) - np.cos(inside)) / (index * np.cos(incidence) + np.cos(inside))
@@ -219,7 +219,7 @@ def solid(outline, material):
     return rw.Mesh(vertices, faces, material=material)
 
 
-def test_the_edge_of_a_doublet_has_less_colour_than_that_of_a_lens(assert_looks):
+def test_the_edge_of_a_doublet_has_less_color_than_that_of_a_lens(assert_looks):
     """A wedge of crown, and one with flint on it: a wall that brightens evenly tells how light is bent."""
     crown, flint = rw.Dielectric(BK7), rw.Dielectric(rw.materials.glasses["F2"])
     a = math.radians(10.0)
@@ -236,7 +236,7 @@ def test_the_edge_of_a_doublet_has_less_colour_than_that_of_a_lens(assert_looks)
 
     straight = np.zeros_like(NM)
     entered, share = bent(straight, 0.0, n)
-    colours = []
+    colors = []
     for shapes in ([first], [first, second]):
         if len(shapes) == 1:
             left, last = bent(entered, a, 1 / n)
@@ -262,12 +262,12 @@ def test_the_edge_of_a_doublet_has_less_colour_than_that_of_a_lens(assert_looks)
         )
         scene = rw.Scene([*shapes, wall])
         assert_looks(scene, camera, 64, expected, rw.Whitted(max_depth=4, contribution=0.0), most=0.01)
-        colours.append(abs(expected[0] - expected[2]))
-    assert colours[1] < 0.2 * colours[0], colours
+        colors.append(abs(expected[0] - expected[2]))
+    assert colors[1] < 0.2 * colors[0], colors
 
 
 def test_a_formula_that_gives_one_index_gives_the_same_picture():
-    """A grey room with glass, by wavelength and in red, green and blue: alike within both errors."""
+    """A gray room with glass, by wavelength and in red, green and blue: alike within both errors."""
 
     def room(ior):
         shapes = [
@@ -297,11 +297,11 @@ def test_spectra_reflect_and_shine_as_integrals_say(assert_looks):
     assert np.allclose(spectrum.reflected_rgb, daylit(share), atol=1e-6)
     # An emitting wall, seen directly; and one that reflects itself infinitely, in a closed box.
     shining = rw.Spectrum([400, 500, 600, 700], [0.0, 2.0, 1.0, 3.0])
-    for light, colour in [
+    for light, color in [
         (rw.Blackbody(4500), rw.Blackbody(4500).rgb),
         (3 * rw.textures.illuminants["D65"], (3, 3, 3)),
     ]:
-        assert_looks(rw.Scene(plate(emission=light)), downwards(16), 64, np.array(colour), most=0.01)
+        assert_looks(rw.Scene(plate(emission=light)), downwards(16), 64, np.array(color), most=0.01)
     scene = rw.Scene(plate(emission=shining))
     assert_looks(scene, downwards(16), 64, _core.spectrum_rgb(shining._rows(), False), most=0.01)
     box = rw.Box(
@@ -362,14 +362,14 @@ def test_glass_is_tinted_by_wavelength(assert_looks):
         rw.Dielectric(transmittance=rw.Spectrum([300, 900], [1.2, 1.2]))
 
 
-def test_colours_of_red_green_and_blue_are_upsampled_to_themselves():
-    """Of constants exactly, and of textures as a table has them; what is grey, exactly flat."""
+def test_colors_of_red_green_and_blue_are_upsampled_to_themselves():
+    """Of constants exactly, and of textures as a table has them; what is gray, exactly flat."""
     rng = np.random.default_rng(5)
-    for colour in [*rng.uniform(0.02, 0.95, (30, 3)), (0.9, 0.05, 0.05), (0.02, 0.02, 0.7), (0.8, 0.79, 0.1)]:
+    for color in [*rng.uniform(0.02, 0.95, (30, 3)), (0.9, 0.05, 0.05), (0.02, 0.02, 0.7), (0.8, 0.79, 0.1)]:
         for bounded in (True, False):
-            exact, table = (_core.smooth_spectrum(colour, bounded, way, NM.tolist()) for way in (False, True))
-            assert np.abs(daylit(exact) - colour).max() < 2e-5, colour
-            assert np.abs(daylit(table) - colour).max() < 0.01 * np.max(colour), (colour, daylit(table))
+            exact, table = (_core.smooth_spectrum(color, bounded, way, NM.tolist()) for way in (False, True))
+            assert np.abs(daylit(exact) - color).max() < 2e-5, color
+            assert np.abs(daylit(table) - color).max() < 0.01 * np.max(color), (color, daylit(table))
             assert np.min(exact) >= 0
             assert not bounded or np.max(exact) <= 1.021
             # Jakob and Hanika's spectra are smooth: they change little from nm to nm.
@@ -377,7 +377,7 @@ def test_colours_of_red_green_and_blue_are_upsampled_to_themselves():
     assert set(_core.smooth_spectrum((0.3,) * 3, True, True, NM.tolist())) == {0.3}
 
 
-def test_coloured_surfaces_and_lights_look_as_they_do_without_wavelengths(assert_looks):
+def test_colored_surfaces_and_lights_look_as_they_do_without_wavelengths(assert_looks):
     pixels = np.linspace(0.05, 0.9, 12, dtype=np.float32).reshape(2, 2, 3)
     textures = [(0.7, 0.2, 0.1), rw.ImageTexture(pixels, filter="nearest"), rw.Checker((0.1, 0.6, 0.2), 0.5)]
     clear = rw.Sphere((50, 0, 50), 1, material=rw.Dielectric(SAME))

@@ -34,8 +34,8 @@ def lamp(emission, height=1.9, radius=1.0):
     return rw.Disk((0, 0, height), (0, 0, -1), radius, material=rw.Diffuse(0), emission=emission)
 
 
-def ball(material, centre=(0.1, 0, 0.9), radius=0.6):
-    return rw.Sphere(centre, radius, material=material)
+def ball(material, center=(0.1, 0, 0.9), radius=0.6):
+    return rw.Sphere(center, radius, material=material)
 
 
 def mean(scene, camera, integrator, samples, seed=0):
@@ -46,20 +46,20 @@ def mean(scene, camera, integrator, samples, seed=0):
 
 
 WHITE = 4 * rw.textures.illuminants["D65"]
-GREY = floor(rw.Diffuse(0.8))
+GRAY = floor(rw.Diffuse(0.8))
 WET = [
     ball(rw.Dielectric(FLINT)),
     ball(rw.Dielectric(rw.materials.glasses["water"], priority=1), radius=0.35),
 ]
 # A scene, a camera, and numbers of samples for a good mean by light tracing and by both.
 SCENES = {
-    "a ball": (rw.Scene([GREY, ball(rw.Dielectric(FLINT)), lamp(WHITE)]), down(0.2, 2.4), (1024, 512)),
+    "a ball": (rw.Scene([GRAY, ball(rw.Dielectric(FLINT)), lamp(WHITE)]), down(0.2, 2.4), (1024, 512)),
     "a rough ball": (
-        rw.Scene([GREY, ball(rw.Dielectric(FLINT, roughness=0.4)), lamp(WHITE)]),
+        rw.Scene([GRAY, ball(rw.Dielectric(FLINT, roughness=0.4)), lamp(WHITE)]),
         down(0.2, 2.4),
         (1024, 512),
     ),
-    "water in glass": (rw.Scene([GREY, *WET, lamp(WHITE)]), down(0.2, 2.4), (1024, 512)),
+    "water in glass": (rw.Scene([GRAY, *WET, lamp(WHITE)]), down(0.2, 2.4), (1024, 512)),
     "films and metals": (
         rw.Scene(
             [
@@ -294,7 +294,7 @@ def test_the_fan_of_a_prism_falls_where_snell_has_it(way, line):
     assert seen[np.abs(np.arange(width) - expected) > 2].sum() < 0.01 * seen.sum()
 
 
-def test_the_fan_has_its_colours_in_order():
+def test_the_fan_has_its_colors_in_order():
     low, high = sorted(places([380.0, 720.0]))
     fan = places(LINES)
     assert (np.diff(fan) > 0).all() or (np.diff(fan) < 0).all()
@@ -305,7 +305,7 @@ def test_the_fan_has_its_colours_in_order():
 def misty(medium):
     """A lamp over a ball of glass, both in what absorbs and scatters by wavelength."""
     mist = rw.Box((-2.5, -2.5, 0.02), (2.5, 2.5, 1.6), material=rw.MediumInterface(medium))
-    return rw.Scene([GREY, ball(rw.Dielectric(FLINT), radius=0.5), mist, lamp(WHITE)])
+    return rw.Scene([GRAY, ball(rw.Dielectric(FLINT), radius=0.5), mist, lamp(WHITE)])
 
 
 def of_waves(least, most):

@@ -70,7 +70,7 @@ def opened(tmp_path, *given, **told):
     return read(tmp_path / "a.exr")
 
 
-GREY = np.random.default_rng(0).uniform(0.1, 2, (20, 30)).astype(np.float32)
+GRAY = np.random.default_rng(0).uniform(0.1, 2, (20, 30)).astype(np.float32)
 
 
 @pytest.mark.parametrize("method", [0, 1, 2, 3])
@@ -90,20 +90,20 @@ GREY = np.random.default_rng(0).uniform(0.1, 2, (20, 30)).astype(np.float32)
     ],
 )
 def test_the_picture_is_what_the_display_window_shows(tmp_path, method, data, display):
-    found = opened(tmp_path, {"Y": GREY}, method, data, display)
+    found = opened(tmp_path, {"Y": GRAY}, method, data, display)
     left, top, right, bottom = display
     wanted = np.zeros((bottom - top + 1, right - left + 1), np.float32)
     for y, x in np.ndindex(wanted.shape):
         row, column = top + y - data[1], left + x - data[0]
         if 0 <= row < 20 and 0 <= column < 30:
-            wanted[y, x] = GREY[row, column]
+            wanted[y, x] = GRAY[row, column]
     assert np.array_equal(found[..., 0], wanted)
 
 
 def test_windows_that_are_none_are_passed_over_and_great_ones_refused(tmp_path):
-    assert np.array_equal(opened(tmp_path, {"Y": GREY}, display=(0, 0, -1, 5))[..., 0], GREY)
+    assert np.array_equal(opened(tmp_path, {"Y": GRAY}, display=(0, 0, -1, 5))[..., 0], GRAY)
     with pytest.raises(ValueError, match="1000000000 x 1000000000 points"):
-        opened(tmp_path, {"Y": GREY}, display=(0, 0, 10**9 - 1, 10**9 - 1))
+        opened(tmp_path, {"Y": GRAY}, display=(0, 0, 10**9 - 1, 10**9 - 1))
 
 
 def colors(image):
@@ -140,7 +140,7 @@ def test_alpha_and_depth_are_no_colors(tmp_path):
     alpha = IMAGE[..., 0] * 0.5
     found = opened(tmp_path, {**colors(IMAGE), "A": alpha}, primaries=REC_2020)
     assert np.array_equal(found[..., 3], alpha)
-    assert np.array_equal(opened(tmp_path, {"Y": GREY}, primaries=REC_2020)[..., 0], GREY)
+    assert np.array_equal(opened(tmp_path, {"Y": GRAY}, primaries=REC_2020)[..., 0], GRAY)
 
 
 @pytest.mark.parametrize("primaries", [(0.0,) * 8, (0.3, 0.3) * 4, (np.nan,) * 8])
@@ -157,12 +157,12 @@ HALF = {"RY": (2, 2), "BY": (2, 2)}
 def test_luminance_and_chroma(tmp_path, method, corner):
     """Chroma that is the same everywhere is so exactly: R = (1 + .25) Y, B = (1 - .5) Y."""
     chroma = {"RY": np.full((10, 15), 0.25), "BY": np.full((10, 15), -0.5)}
-    found = opened(tmp_path, {"Y": GREY, **chroma}, method, corner, sampling=HALF)
+    found = opened(tmp_path, {"Y": GRAY, **chroma}, method, corner, sampling=HALF)
     assert found.shape == (20, 30, 3)
-    assert np.allclose(found[..., 0], 1.25 * GREY, rtol=1e-6)
-    assert np.allclose(found[..., 2], 0.5 * GREY, rtol=1e-6)
+    assert np.allclose(found[..., 0], 1.25 * GRAY, rtol=1e-6)
+    assert np.allclose(found[..., 2], 0.5 * GRAY, rtol=1e-6)
     weights = np.linalg.inv(FROM_XYZ)[1]
-    assert np.allclose(found @ weights, GREY, rtol=1e-3)
+    assert np.allclose(found @ weights, GRAY, rtol=1e-3)
 
 
 @pytest.mark.parametrize("step", [(2, 2), (2, 1), (1, 2), (4, 4), (1, 1)])
@@ -185,8 +185,8 @@ def test_chroma_is_exact_at_its_samples_and_smooth_between(tmp_path, step):
 def test_luminance_has_the_weights_of_its_primaries(tmp_path):
     """Of X, Y and Z in place of red, green and blue, Y is the luminance."""
     chroma = {"RY": np.full((10, 15), 0.25), "BY": np.full((10, 15), -0.5)}
-    found = opened(tmp_path, {"Y": GREY, **chroma}, sampling=HALF, primaries=XYZ)
-    wanted = GREY[..., None] * (FROM_XYZ @ (1.25, 1.0, 0.5))
+    found = opened(tmp_path, {"Y": GRAY, **chroma}, sampling=HALF, primaries=XYZ)
+    wanted = GRAY[..., None] * (FROM_XYZ @ (1.25, 1.0, 0.5))
     assert np.allclose(found, wanted, rtol=2e-3)
 
 
@@ -201,7 +201,7 @@ def test_luminance_has_the_weights_of_its_primaries(tmp_path):
 )
 def test_samples_that_do_not_fit_are_told(tmp_path, corner, sampling, message):
     chroma = dict.fromkeys(("RY", "BY"), np.zeros((20, 15)))
-    data = exr({"Y": GREY, **chroma}, data=corner, sampling=HALF)
+    data = exr({"Y": GRAY, **chroma}, data=corner, sampling=HALF)
     data = data.replace(struct.pack("<2i", 2, 2), struct.pack("<2i", *sampling))
     (tmp_path / "a.exr").write_bytes(data)
     with pytest.raises(ValueError, match=message):

@@ -149,12 +149,12 @@ def test_of_many_levels_the_largest_is_read(tmp_path, mode):
     assert np.array_equal(read(path)[..., 0], pixels)
 
 
-def test_greys_and_missing_channels(tmp_path):
-    grey = np.linspace(0, 2, 12, dtype=np.float32).reshape(3, 4)
+def test_grays_and_missing_channels(tmp_path):
+    gray = np.linspace(0, 2, 12, dtype=np.float32).reshape(3, 4)
     for names, shape in ((("Y",), (3, 4, 1)), (("Y", "A"), (3, 4, 2))):
-        write(tmp_path / "g.exr", dict.fromkeys(names, grey))
+        write(tmp_path / "g.exr", dict.fromkeys(names, gray))
         assert read(tmp_path / "g.exr").shape == shape
-    write(tmp_path / "g.exr", {"R": grey, "B": grey})
+    write(tmp_path / "g.exr", {"R": gray, "B": gray})
     with pytest.raises(ValueError, match="it has no channel G, only B, R"):
         read(tmp_path / "g.exr")
 

@@ -27,7 +27,7 @@ def png(depth, kind, rows, transparent):
 
 
 @pytest.mark.parametrize("depth", [1, 2, 4, 8, 16])
-def test_one_grey_of_a_png_is_transparent(tmp_path, depth):
+def test_one_gray_of_a_png_is_transparent(tmp_path, depth):
     most = 2**depth - 1
     for key in {0, 1, most // 2, most}:
         rows = [[0, key, most], [most, 0, key]]

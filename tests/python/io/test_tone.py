@@ -12,7 +12,7 @@ import raywright as rw
 from raywright.io import pictures, shown
 from raywright.io.tone import toned
 
-COLOURS = st.lists(st.floats(0, 1e6, width=32), min_size=3, max_size=3).map(np.array)
+COLORS = st.lists(st.floats(0, 1e6, width=32), min_size=3, max_size=3).map(np.array)
 
 
 def film(*rgb):
@@ -24,15 +24,15 @@ def test_what_is_no_brighter_than_half_of_white_stays_as_it_is():
     np.testing.assert_allclose(toned(dark, 0.0, "filmic"), dark, rtol=1e-15)
 
 
-@pytest.mark.parametrize("grey", [0.18, 0.5, 0.75, 1.0, 2.0, 17.0, 1e4])
-def test_greys_go_by_the_shoulder(grey):
+@pytest.mark.parametrize("gray", [0.18, 0.5, 0.75, 1.0, 2.0, 17.0, 1e4])
+def test_grays_go_by_the_shoulder(gray):
     # 1 - (1 - k)² / (x + 1 - 2k), with k = 0.5, is the shoulder of Khronos' PBR Neutral.
-    expected = grey if grey <= 0.5 else 1 - 0.25 / grey
-    assert film(grey, grey, grey) == pytest.approx([expected] * 3, rel=1e-14)
+    expected = gray if gray <= 0.5 else 1 - 0.25 / gray
+    assert film(gray, gray, gray) == pytest.approx([expected] * 3, rel=1e-14)
 
 
-@given(COLOURS)
-def test_shown_colours_are_in_range_and_keep_their_hue(rgb):
+@given(COLORS)
+def test_shown_colors_are_in_range_and_keep_their_hue(rgb):
     there = film(*rgb)
     assert (there >= 0).all()
     assert (there <= 1).all()
@@ -45,7 +45,7 @@ def test_shown_colours_are_in_range_and_keep_their_hue(rgb):
         assert between == pytest.approx(place * (there[high] - there[low]), rel=1e-6, abs=1e-14)
 
 
-@given(COLOURS, st.floats(1.01, 4))
+@given(COLORS, st.floats(1.01, 4))
 def test_brighter_light_is_shown_brighter(rgb, times):
     assert (film(*(rgb * times)).max() - film(*rgb).max()) >= 0
 
@@ -70,13 +70,13 @@ def test_exposure_counts_in_stops(tone):
 
 
 @pytest.mark.parametrize("tone", ["filmic", "linear"])
-def test_what_is_no_colour_is_shown_as_black_or_white(tone):
+def test_what_is_no_color_is_shown_as_black_or_white(tone):
     odd = np.array([[np.nan] * 3, [-1] * 3, [np.inf] * 3, [3e38] * 3], np.float32)
     for stops in (-0.0, 100.0):
         assert shown.srgb(odd, None, stops, tone)[:, 0].tolist() == [0, 0, 255, 255]
 
 
-def test_a_share_of_a_pixel_has_the_colour_of_what_covers_it():
+def test_a_share_of_a_pixel_has_the_color_of_what_covers_it():
     whole = np.array([[[0.2, 0.9, 3.0]]])
     for alpha in (1.0, 0.5, 0.1):
         pixel = shown.srgb(whole * alpha, np.full((1, 1), alpha))[0, 0]

@@ -50,7 +50,7 @@ def test_sides_that_shine_are_told_in_either_way():
     assert replace(rw.Emission(1, side="back"), radiance=(2, 2, 2)) == rw.Emission(2, side="back")
 
 
-def test_pictures_are_kept_read_only_and_grey_ones_become_colours():
+def test_pictures_are_kept_read_only_and_gray_ones_become_colors():
     light = rw.EnvironmentMap(PICTURE.astype(np.float64))
     assert light.image.dtype == np.float32
     assert not light.image.flags.writeable

@@ -165,9 +165,9 @@ HOLLOW = {f"{name}, {side}": one for side in ("both", "back") for name, one in h
 )
 def test_within_any_hollow_shape_that_shines_it_is_alike(kind):
     # Closed, with radiance 1 and a reflectance of a half: 1 / (1 - 0.5), and 1.5 with one bounce.
-    shape, centre = HOLLOW[kind]
+    shape, center = HOLLOW[kind]
     scene = rw.Scene(shape, precision="double")
-    camera = rw.Camera(centre, np.add(centre, (0.3, 0.4, 0.5)), fov=90, width=8, height=8)
+    camera = rw.Camera(center, np.add(center, (0.3, 0.4, 0.5)), fov=90, width=8, height=8)
     for depth, expected in ((None, 2.0), (1, 1.5)):
         image = rw.render(scene, camera, rw.Path(max_depth=depth), samples=128, progress=False)
         error = math.sqrt(float(np.square(image.standard_error[..., 1].astype(float)).sum())) / 64
@@ -176,8 +176,8 @@ def test_within_any_hollow_shape_that_shines_it_is_alike(kind):
 
 def test_a_ball_that_shines_and_reflects_is_seen_by_itself_from_outside_only():
     # Convex: none of its own light falls on its outside, despite rounding.
-    for centre in ((0, 0, 0), (1e5, 0, 0)):
-        ball = rw.Sphere(centre, 1, material=rw.Diffuse(0.5), emission=rw.Emission(1, both_sides=True))
-        camera = rw.Camera(np.add(centre, (0, 0, 9)), centre, fov=8, width=16, height=16)
+    for center in ((0, 0, 0), (1e5, 0, 0)):
+        ball = rw.Sphere(center, 1, material=rw.Diffuse(0.5), emission=rw.Emission(1, both_sides=True))
+        camera = rw.Camera(np.add(center, (0, 0, 9)), center, fov=8, width=16, height=16)
         image = rw.render(rw.Scene(ball, precision="double"), camera, samples=16, progress=False)
         np.testing.assert_array_equal(image.rgb, 1)

@@ -82,15 +82,15 @@ def references():
     for line in REFERENCES.read_text().splitlines():
         if not line.startswith("#"):
             symbol, light, *numbers = line.split()
-            alpha, angle, *colours = map(float, numbers)
-            yield symbol, View(light, alpha, angle), np.array(colours[:3]), np.array(colours[3:])
+            alpha, angle, *colors = map(float, numbers)
+            yield symbol, View(light, alpha, angle), np.array(colors[:3]), np.array(colors[3:])
 
 
 def write(names):
     """Look at metals by Mitsuba and write the references; at all of them if none is named."""
     kept = {}
     if REFERENCES.exists() and names:
-        kept = {(symbol, view): colours for symbol, view, *colours in references()}
+        kept = {(symbol, view): colors for symbol, view, *colors in references()}
     for symbol in names or METALS:
         for view in VIEWS:
             kept[symbol, view] = by_mitsuba(symbol, view)
@@ -100,8 +100,8 @@ def write(names):
         ]
         lines.append("# Metal, light, alpha, angle; red, green, blue, and their standard errors.\n")
         for (metal, view), (mean, error) in sorted(kept.items()):
-            colours = " ".join([*(f"{x:.5f}" for x in mean), *(f"{x:.1e}" for x in error)])
-            lines.append(f"{metal} {view.light} {view.alpha:g} {view.angle:g} {colours}\n")
+            colors = " ".join([*(f"{x:.5f}" for x in mean), *(f"{x:.1e}" for x in error)])
+            lines.append(f"{metal} {view.light} {view.alpha:g} {view.angle:g} {colors}\n")
         REFERENCES.write_text("".join(lines))
 
 

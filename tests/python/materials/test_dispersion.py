@@ -128,7 +128,7 @@ def test_cauchys_formula():
     assert rw.materials.Cauchy(1.5, 0).abbe == np.inf
 
 
-def test_prisms_and_lenses_send_colours_where_they_go():
+def test_prisms_and_lenses_send_colors_where_they_go():
     lines = [0.4358343, 0.4861327, 0.5875618, 0.6562725]
     for name, degrees in [
         ("N-BK7", [39.5194794387944, 39.1381087356575, 38.6466985052864, 38.4291367036214]),
@@ -174,7 +174,7 @@ def test_shapes_of_arrays_are_kept():
 
 
 def test_principled_solids_disperse():
-    # A wedge deflects each colour by its own angle: past an edge, some colours see light and others the dark.
+    # A wedge deflects each color by its own angle: past an edge, some colors see light and others the dark.
     # With white transmission, both materials are glass with single scattering.
     glass = rw.materials.Cauchy(1.5, 0.03)
     ends = [(x, y, z) for z in (0, -1) for x, y in [(-1, -1), (1, -1), (1, 1), (-1, 1)]]
@@ -215,14 +215,14 @@ def test_principled_solids_disperse():
         (
             lambda: rw.materials.glasses["F2"].index([0.5, 0.0]),
             ValueError,
-            "micrometres must be finite and greater than 0",
+            "micrometers must be finite and greater than 0",
         ),
         (
             lambda: rw.materials.glasses["F2"].index(np.nan),
             ValueError,
-            "micrometres must be finite .* got nan",
+            "micrometers must be finite .* got nan",
         ),
-        (lambda: rw.materials.glasses["F2"].index("red"), TypeError, "micrometres must be real numbers"),
+        (lambda: rw.materials.glasses["F2"].index("red"), TypeError, "micrometers must be real numbers"),
         (lambda: rw.materials.Sellmeier([1.0], [0.01]).index(0.09), ValueError, "it has no index at 0.09"),
         (
             lambda: rw.materials.Sellmeier([1.0, 2.0], [0.01]),
@@ -239,17 +239,17 @@ def test_principled_solids_disperse():
         (
             lambda: rw.ThinDielectric(rw.materials.glasses["SF10"]),
             TypeError,
-            "got a Sellmeier: a pane sends all colours",
+            "got a Sellmeier: a pane sends all colors",
         ),
         (
             lambda: rw.materials.PrincipledThin(ior=rw.materials.Cauchy(1.5, 0.004)),
             TypeError,
-            "a sheet sends all colours straight",
+            "a sheet sends all colors straight",
         ),
         (
             lambda: rw.materials.SoapFilm(300.0, rw.materials.Cauchy(1.3, 0.004)),
             TypeError,
-            "films have the same for all colours",
+            "films have the same for all colors",
         ),
         (lambda: rw.materials.Cauchy(0, 0.004), ValueError, "B must be"),
         (lambda: rw.materials.Cauchy(1.5, np.inf), ValueError, "C must be"),

@@ -1,4 +1,4 @@
-"""Thin films in scenes whose paths carry wavelengths, beside the colours that they have without."""
+"""Thin films in scenes whose paths carry wavelengths, beside the colors that they have without."""
 
 import math
 
@@ -12,7 +12,7 @@ SAME = rw.materials.Cauchy(1.5, 0.0)
 
 
 def looked(material, by_wave, samples):
-    """The colour of a plate in even light, at 45 degrees, with nothing but black behind it, and its error."""
+    """The color of a plate in even light, at 45 degrees, with nothing but black behind it, and its error."""
     plate = rw.Mesh(
         [[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], [[0, 1, 2], [0, 2, 3]], material=material
     )
@@ -39,9 +39,9 @@ def looked(material, by_wave, samples):
     ],
     ids=["soap", "oil on water", "gold"],
 )
-def test_wavelengths_together_have_the_colour_of_the_film(material):
-    colour, error = looked(material, False, 64)
+def test_wavelengths_together_have_the_color_of_the_film(material):
+    color, error = looked(material, False, 64)
     seen, spread = looked(material, True, 4096)
     # RGB reflection at one angle has no noise of wavelengths; the other has.
-    assert (spread < 0.02 * colour.max()).all()
-    assert (np.abs(seen - colour) <= 3 * np.hypot(error, spread) + 2e-3 * colour.max()).all(), (seen, colour)
+    assert (spread < 0.02 * color.max()).all()
+    assert (np.abs(seen - color) <= 3 * np.hypot(error, spread) + 2e-3 * color.max()).all(), (seen, color)

@@ -13,7 +13,7 @@ from trimesh.visual.material import PBRMaterial, SimpleMaterial
 
 import raywright as rw
 
-GREY = rw.Diffuse(0.5)
+GRAY = rw.Diffuse(0.5)
 MATERIALS = [
     rw.Diffuse((0.1, 0.2, 0.3)),
     rw.Diffuse(rw.Checker()),
@@ -27,11 +27,11 @@ MATERIALS = [
     rw.materials.Phong(0.5, 0.3, 20, ambient=0.1),
     rw.materials.BlinnPhong((0.5, 0.1, 0.1)),
     rw.MetallicRough(rw.Checker(), 0.5, rw.textures.Noise(0.2, 0.4)),
-    rw.Mix(GREY, rw.Mirror(), rw.Checker(0, 1)),
-    rw.Mask(GREY, rw.textures.Stripes(0, 1)),
-    rw.BumpMap(GREY, rw.textures.FBm(), 0.1),
-    rw.NormalMap(GREY, rw.ImageTexture(np.full((2, 2, 3), 128, np.uint8), linear=True)),
-    rw.TwoSided(GREY, rw.Mirror()),
+    rw.Mix(GRAY, rw.Mirror(), rw.Checker(0, 1)),
+    rw.Mask(GRAY, rw.textures.Stripes(0, 1)),
+    rw.BumpMap(GRAY, rw.textures.FBm(), 0.1),
+    rw.NormalMap(GRAY, rw.ImageTexture(np.full((2, 2, 3), 128, np.uint8), linear=True)),
+    rw.TwoSided(GRAY, rw.Mirror()),
 ]
 
 
@@ -151,10 +151,10 @@ def test_metals_have_names_and_symbols():
             r"metallic must be a texture or one number, got",
         ),
         (lambda: rw.MetallicRough("red"), TypeError, r"base_color must be real numbers, got 'red'"),
-        (lambda: rw.Mix(GREY, 0.5), TypeError, r"b must be a raywright material, got float"),
-        (lambda: rw.Mask(GREY, 2), ValueError, r"opacity must be between 0 and 1, got 2"),
-        (lambda: rw.BumpMap(GREY, math.inf), ValueError, r"height must be finite, got inf"),
-        (lambda: rw.NormalMap(GREY, (0.5, 0.5, 2)), ValueError, r"normals must be between 0 and 1, got"),
+        (lambda: rw.Mix(GRAY, 0.5), TypeError, r"b must be a raywright material, got float"),
+        (lambda: rw.Mask(GRAY, 2), ValueError, r"opacity must be between 0 and 1, got 2"),
+        (lambda: rw.BumpMap(GRAY, math.inf), ValueError, r"height must be finite, got inf"),
+        (lambda: rw.NormalMap(GRAY, (0.5, 0.5, 2)), ValueError, r"normals must be between 0 and 1, got"),
         (lambda: rw.Sphere(material=0.5), TypeError, r"material must be a raywright material, got float"),
         (
             lambda: rw.Sphere(emission=rw.Checker(-1)),
@@ -170,7 +170,7 @@ def test_what_cannot_be_is_refused_in_one_line(make, error, told):
 
 
 def test_sides_that_let_light_through_are_refused():
-    scene = rw.Scene(rw.Sphere(material=rw.TwoSided(GREY, rw.Dielectric())))
+    scene = rw.Scene(rw.Sphere(material=rw.TwoSided(GRAY, rw.Dielectric())))
     with pytest.raises(ValueError, match="material of shape 0: back must not transmit light"):
         scene.intersect((0, 0, 3), (0, 0, -1))
 
@@ -258,7 +258,7 @@ def test_what_gltf_leaves_out_is_as_it_says():
     assert loaded(PBRMaterial()).material == rw.Diffuse()
 
 
-def test_pictures_and_colours_of_vertices_are_loaded():
+def test_pictures_and_colors_of_vertices_are_loaded():
     shown = loaded(SimpleMaterial(image=picture("RGB")))
     assert shown.material == rw.Diffuse(rw.ImageTexture(np.asarray(picture("RGB"))))
     box = trimesh.creation.box()

@@ -1,4 +1,4 @@
-"""Metals have the colours of their spectra: those of spectral renderers, and of the integral."""
+"""Metals have the colors of their spectra: those of spectral renderers, and of the integral."""
 
 import itertools
 
@@ -24,12 +24,12 @@ def looked_at(metal, view, side=1, samples=1):
 
 
 def seen(metal, view):
-    """The colour of it."""
+    """The color of it."""
     return looked_at(metal, view).rgb[0, 0].astype(np.float64)
 
 
 def fresnel(cosine, eta, k):
-    """The reflectance of unpolarised light, by Fresnel's equations for a complex index."""
+    """The reflectance of unpolarized light, by Fresnel's equations for a complex index."""
     index = np.asarray(eta) + 1j * np.asarray(k)
     through = np.sqrt(index**2 - (1 - cosine**2))
     s = (cosine - through) / (cosine + through)
@@ -38,8 +38,8 @@ def fresnel(cosine, eta, k):
 
 
 @pytest.mark.parametrize(
-    ("symbol", "colour"),
-    # Colours of a plate in a uniform white sky, by Mitsuba's spectral variants: Mitsuba 3.9,
+    ("symbol", "color"),
+    # Colors of a plate in a uniform white sky, by Mitsuba's spectral variants: Mitsuba 3.9,
     # `mitsuba_metals`.
     [
         ("Au", (1.0216, 0.7823, 0.3436)),
@@ -47,9 +47,9 @@ def fresnel(cosine, eta, k):
         ("Cr", (0.6345, 0.6621, 0.7047)),
     ],
 )
-def test_metals_in_a_white_furnace_have_their_colours(symbol, colour):
+def test_metals_in_a_white_furnace_have_their_colors(symbol, color):
     plate = seen(rw.Conductor(symbol), View("sky", 0.0, 0.0))
-    assert np.allclose(plate, colour, rtol=2e-3, atol=0)
+    assert np.allclose(plate, color, rtol=2e-3, atol=0)
 
 
 @pytest.mark.parametrize("symbol", METALS)
@@ -108,7 +108,7 @@ def test_constants_are_fresnels_in_each_channel():
 
 
 def test_gold_is_not_brighter_than_all_there_is_for_ever():
-    """In a hollow ball of gold that shines, at its centre: each wavelength gives 1 / (1 - F), at most 36."""
+    """In a hollow ball of gold that shines, at its center: each wavelength gives 1 / (1 - F), at most 36."""
     shining = rw.Emission(1.0, both_sides=True)
     inside = rw.Scene(rw.Sphere(material=rw.Conductor("gold"), emission=shining))
     eye = rw.Camera((0, 0, 0), (0, 0, -1), width=16, height=16)

@@ -95,7 +95,7 @@ def test_a_ball_of_rough_glass_gains_and_loses_nothing(ior, alpha, samples, dist
 
 
 def fresnel(cosine, ratio):
-    """Reflectance for unpolarised light; `ratio` is the index beyond over that before (Born and Wolf)."""
+    """Reflectance for unpolarized light; `ratio` is the index beyond over that before (Born and Wolf)."""
     sine = np.sqrt(np.maximum(1 - cosine**2, 0)) / ratio
     beyond = np.sqrt(np.maximum(1 - sine**2, 0))
     s = (cosine - ratio * beyond) / (cosine + ratio * beyond)
@@ -202,7 +202,7 @@ def ball(radius, ior, priority=0):
         ([slab(0, 1, 1.5), slab(1, 2, 1.5, 1)], [1, 1.5, 1]),
         ([slab(0, 1, 3.0), slab(1 + 1e-6, 2, 2.0, 1)], [1, 2, 1, 3, 1]),
         ([slab(0, 1, 3.0), slab(1, 2, 2.0, 1)], [1, 2, 3, 1]),
-        # Rays through the common centre hit all balls at right angles.
+        # Rays through the common center hit all balls at right angles.
         ([ball(2, 1.5), ball(2 - 1e-6, 3.0, 1)], [1, 1.5, 3, 1.5, 1]),
         ([ball(2, 1.5), ball(2, 3.0, 1)], [1, 3, 1]),
         ([ball(2, 1.5), ball(2, 1.0, 1)], [1, 1, 1]),

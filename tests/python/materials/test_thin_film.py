@@ -1,4 +1,4 @@
-"""Films as thick as waves of light are long: their colours, what they let through, and what they refuse."""
+"""Films as thick as waves of light are long: their colors, what they let through, and what they refuse."""
 
 import copy
 import pickle
@@ -14,7 +14,7 @@ EVERY_NM = np.arange(360.0, 831.0)
 
 
 def reflectance(thickness, indices, cosine):
-    """Of unpolarised light at every nm, by the characteristic matrix of a layer (Abeles, 1950)."""
+    """Of unpolarized light at every nm, by the characteristic matrix of a layer (Abeles, 1950)."""
     outside, film, base = (np.asarray(index, complex) for index in indices)
     along = outside**2 * (1 - cosine**2)
     roots = [outside * cosine, np.sqrt(film**2 - along), np.sqrt(base**2 - along)]
@@ -30,7 +30,7 @@ def reflectance(thickness, indices, cosine):
     return result
 
 
-def colour(thickness, indices, cosine=1.0):
+def color(thickness, indices, cosine=1.0):
     """What a film reflects of daylight: the integral over every nm."""
     spectrum = np.broadcast_to(reflectance(thickness, indices, cosine), EVERY_NM.shape)
     return np.array(_core.spectrum_rgb(np.column_stack([EVERY_NM, spectrum]).tolist(), True))
@@ -57,9 +57,9 @@ COSINES = np.array([1.0, 0.9, 0.7, 0.4, 0.2, 0.1, 0.03, 0.004])
 
 
 @pytest.mark.parametrize("thickness", [5.0, 100.0, 310.0, 480.0, 850.0, 3000.0, 5500.0])
-def test_soap_films_have_the_colour_of_the_integral(thickness):
+def test_soap_films_have_the_color_of_the_integral(thickness):
     reflected, through = ways(rw.materials.SoapFilm(thickness), COSINES)
-    truth = [colour(thickness, (1, SOAP, 1), cosine).clip(0, 1) for cosine in COSINES]
+    truth = [color(thickness, (1, SOAP, 1), cosine).clip(0, 1) for cosine in COSINES]
     assert np.abs(reflected.weight - truth).max() < 1e-5
     # Light that is not reflected passes straight through.
     assert reflected.weight + through.weight == pytest.approx(1, abs=1e-14)
@@ -73,7 +73,7 @@ def test_soap_is_black_where_it_is_thin_and_a_pane_where_it_is_thick():
     assert through.weight == pytest.approx(1, abs=1e-6)
     assert ways(rw.materials.SoapFilm(5.0), 1.0)[0].weight.max() < 1e-3
     thick = ways(rw.materials.SoapFilm(1e6), COSINES)[0].weight
-    # Fresnel's reflectance of either polarisation, with all internal reflections: 2r / (1 + r).
+    # Fresnel's reflectance of either polarization, with all internal reflections: 2r / (1 + r).
     within = np.sqrt(SOAP**2 - 1 + COSINES**2)
     r = np.array(
         [
@@ -82,7 +82,7 @@ def test_soap_is_black_where_it_is_thin_and_a_pane_where_it_is_thick():
         ]
     )
     assert np.abs(thick - np.mean(2 * r / (1 + r), axis=0)[:, None]).max() < 1e-9
-    # A pane averages the polarisations: equal at normal incidence.
+    # A pane averages the polarizations: equal at normal incidence.
     assert thick[0] == pytest.approx(ways(rw.ThinDielectric(SOAP), 1.0)[0].weight[0], abs=1e-9)
 
 
@@ -106,10 +106,10 @@ def test_the_orders_of_soap_follow_each_other_as_one_sees_them():
 
 @pytest.mark.parametrize(("film", "base"), [(1.47, SOAP), (1.38, 1.52), (2.4, 1.5), (1.1, 1.7)])
 @pytest.mark.parametrize("thickness", [99.6, 300.0, 1200.0])
-def test_films_on_glass_have_the_colour_of_the_integral_from_both_sides(film, base, thickness):
+def test_films_on_glass_have_the_color_of_the_integral_from_both_sides(film, base, thickness):
     material = rw.materials.ThinFilm(thickness, film, base=rw.Dielectric(base))
     reflected, through = ways(material, COSINES)
-    truth = np.array([colour(thickness, (1, film, base), cosine).clip(0, 1) for cosine in COSINES])
+    truth = np.array([color(thickness, (1, film, base), cosine).clip(0, 1) for cosine in COSINES])
     assert np.abs(reflected.weight - truth).max() < 1e-5
     assert reflected.weight + through.weight * base**2 == pytest.approx(1, abs=1e-12)
     # From within, at the refracted angles: the same (Stokes, 1849).
@@ -123,17 +123,17 @@ def test_films_on_glass_have_the_colour_of_the_integral_from_both_sides(film, ba
 
 
 @pytest.mark.parametrize(("film", "thickness"), [(1.46, 100.0), (2.2, 35.0), (1.5, 700.0)])
-def test_films_on_metals_have_the_colour_of_the_integral(film, thickness):
+def test_films_on_metals_have_the_color_of_the_integral(film, thickness):
     for name in ("gold", "aluminium", "tungsten"):
         wavelengths, eta, k = rw.materials.metal_index(name)
         index = np.interp(EVERY_NM, wavelengths, eta) + 1j * np.interp(EVERY_NM, wavelengths, k)
         reflected, through = ways(rw.materials.ThinFilm(thickness, film, base=rw.Conductor(name)), COSINES)
-        truth = np.array([colour(thickness, (1, film, index), cosine) for cosine in COSINES])
+        truth = np.array([color(thickness, (1, film, index), cosine) for cosine in COSINES])
         assert np.abs(reflected.weight - truth.clip(0)).max() < 5e-5
         assert not through.any.any()
     silicon = rw.Conductor(eta=4.08, k=0.028)
     reflected, _ = ways(rw.materials.ThinFilm(thickness, film, base=silicon), COSINES)
-    truth = [colour(thickness, (1, film, 4.08 + 0.028j), cosine) for cosine in COSINES]
+    truth = [color(thickness, (1, film, 4.08 + 0.028j), cosine) for cosine in COSINES]
     assert np.abs(reflected.weight - np.clip(truth, 0, 1)).max() < 1e-5
 
 
@@ -142,7 +142,7 @@ def test_channels_of_metals_have_indices_of_their_own():
     reflected, _ = ways(rw.materials.ThinFilm(250.0, 1.5, base=rw.Conductor(eta=eta, k=k)), COSINES)
     for channel in range(3):
         index = eta[channel] + 1j * k[channel]
-        truth = [colour(250.0, (1, 1.5, index), cosine)[channel] for cosine in COSINES]
+        truth = [color(250.0, (1, 1.5, index), cosine)[channel] for cosine in COSINES]
         assert np.abs(reflected.weight[:, channel] - np.clip(truth, 0, 1)).max() < 1e-5
 
 
@@ -320,7 +320,7 @@ def test_what_lies_in_one_another_keeps_its_films():
     assert seen.mean(axis=(0, 1)) == pytest.approx(1, abs=0.01)
 
 
-def test_scenes_of_films_show_their_colours():
+def test_scenes_of_films_show_their_colors():
     scene, camera = rw.scenes.soap_bubble(24, 24)
     top, bottom = (
         scene.interactions(rays([(0, -0.1, z)], [(0, 0.1, 0.995 * np.sign(z) - z)])).reflected().weight[0]
@@ -334,7 +334,7 @@ def test_scenes_of_films_show_their_colours():
     image = rw.render(scene, camera, samples=16, progress=False)
     saturation = np.ptp(image.rgb, axis=2) / image.rgb.max(axis=2)
     assert saturation.max() > 0.2
-    # Water without oil has no colour.
+    # Water without oil has no color.
     assert saturation.min() < 0.02
 
 

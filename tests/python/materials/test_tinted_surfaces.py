@@ -1,4 +1,4 @@
-"""Glass with a colour at its surface: stained glass, slides, what loads from files as such."""
+"""Glass with a color at its surface: stained glass, slides, what loads from files as such."""
 
 import copy
 import pickle
@@ -30,7 +30,7 @@ def seen(*shapes, way=None, samples=4, environment=SKY, **more):
 
 
 @pytest.mark.parametrize("way", [rw.Path(), rw.Whitted()], ids=["path", "whitted"])
-def test_of_an_index_that_is_around_it_a_solid_shows_its_colour_twice_and_a_pane_once(way):
+def test_of_an_index_that_is_around_it_a_solid_shows_its_color_twice_and_a_pane_once(way):
     solid = seen(slab(rw.materials.Tinted(rw.Dielectric(1.0), COLOR)), way=way)
     assert np.allclose(solid, COLOR**2, rtol=1e-6, atol=0)
     pane = sheet(9, rw.materials.Tinted(rw.ThinDielectric(1.0), COLOR))
@@ -58,8 +58,8 @@ def test_all_ways_to_and_fro_are_tinted_at_every_surface(ior):
 
 @pytest.mark.parametrize("distribution", ["ggx", "beckmann"])
 @pytest.mark.parametrize("again", [True, False])
-def test_rough_glass_shows_its_colours_as_much_as_clear_one(distribution, again):
-    # With the same grey in both, each sample is the untinted one times a power: one factor per crossing.
+def test_rough_glass_shows_its_colors_as_much_as_clear_one(distribution, again):
+    # With the same gray in both, each sample is the untinted one times a power: one factor per crossing.
     rough = rw.Dielectric(1.5, 0.5, distribution=distribution, multiple_scattering=again)
     floor = rw.Plane((0, 0, -1), material=rw.Diffuse(0.0), emission=1.0)
     below = sheet(9, rough)
@@ -110,7 +110,7 @@ def test_what_it_cannot_be_is_refused(arguments, error, message):
 
 
 @pytest.mark.parametrize("kind", ["dielectric", "roughdielectric", "thindielectric"])
-def test_glass_of_mitsuba_keeps_the_colours_of_its_surface(kind):
+def test_glass_of_mitsuba_keeps_the_colors_of_its_surface(kind):
     texture = {"type": "checkerboard", "color0": 0.25, "color1": 0.75}
     bsdf = {"type": kind, "specular_transmittance": texture, "specular_reflectance": 0.5}
     ball = {"type": "sphere", "bsdf": bsdf}

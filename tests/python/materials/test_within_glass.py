@@ -86,7 +86,7 @@ def test_what_is_not_metal_in_gltf_has_an_index_of_its_own():
             np.testing.assert_allclose(found, bare(1.5, 0, index), rtol=1e-5)
         for index in (1.5, 2.0):
             assert mirrored(rw.MetallicRough(0.0, 0.0, 0.0), index, integrator, samples=16).max() < 1e-12
-        # A metal's colour stays as given.
+        # A metal's color stays as given.
         metal = mirrored(rw.MetallicRough((0.9, 0.6, 0.3), 1.0, 0.0), 1.33, integrator, samples=16)
         np.testing.assert_allclose(metal, (0.9, 0.6, 0.3), rtol=1e-6)
 

@@ -235,7 +235,5 @@ def test_names_and_wrong_input():
         with pytest.raises(ValueError, match=text):
             kind(**options)
     scan = measure.lidar(BALL, RASTER)
-    with pytest.raises(
-        ValueError, match="name must be one of 'range', 'incidence', 'strength', got 'colour'"
-    ):
-        scan.image("colour")
+    with pytest.raises(ValueError, match="name must be one of 'range', 'incidence', 'strength', got 'color'"):
+        scan.image("color")

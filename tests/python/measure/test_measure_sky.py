@@ -102,7 +102,7 @@ def test_told_errors_hold_for_rare_skies_too(share, rays):
 
 
 PLANE = rw.Plane((0, 0, 0), (0, 0, 1))
-KERB = trimesh.creation.box(bounds=[(0.0625, -5, 0), (1, 5, 0.125)])
+CURB = trimesh.creation.box(bounds=[(0.0625, -5, 0), (1, 5, 0.125)])
 
 
 def ground(size):
@@ -123,8 +123,8 @@ PLANE_BELOW = (0.0, 0.0, -1e-3)
 
 
 def test_a_point_is_told_the_same_whatever_is_asked_with_it():
-    """A kerb of 1/8 that stands 1/16 away, ten long, hides as much sky as an endless wall, but for 1e-4."""
-    scene = rw.Scene([PLANE, KERB])
+    """A curb of 1/8 that stands 1/16 away, ten long, hides as much sky as an endless wall, but for 1e-4."""
+    scene = rw.Scene([PLANE, CURB])
     alone = measure.sky_view(scene, (0, 0, 0), (0, 0, 1), rays=1024)
     others = measure.sky_view(scene, [(0, 0, 0), (1e5, 0, 0), (0, 0, 1e9)], (0, 0, 1), rays=1024)
     assert alone.value == others.value[0]
@@ -140,9 +140,9 @@ def test_a_point_is_told_the_same_whatever_is_asked_with_it():
 
 @pytest.mark.parametrize("size", [10.0, 1e3, 1e5, 1e7])
 @pytest.mark.parametrize("at", [0.0, 0.01])
-def test_a_kerb_is_not_stepped_over_however_large_the_scene_is(size, at):
-    """On the ground, and a centimetre above it."""
-    scene = rw.Scene([ground(size), KERB])
+def test_a_curb_is_not_stepped_over_however_large_the_scene_is(size, at):
+    """On the ground, and a centimeter above it."""
+    scene = rw.Scene([ground(size), CURB])
     found = measure.sky_view(scene, (0, 0, at), (0, 0, 1), rays=1024)
     hidden = (1 - np.cos(np.arctan2(0.125 - at, 0.0625))) / 2
     assert abs(1 - found.value - hidden) < 4 * found.standard_error

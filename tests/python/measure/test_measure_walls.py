@@ -20,7 +20,7 @@ def test_a_shell_is_as_thick_as_its_radii_differ():
 
 
 def test_a_shell_of_faces_is_as_thick_as_its_faces_are_apart():
-    """Between two like polyhedra every pair of faces is the difference of the distances from the centre
+    """Between two like polyhedra every pair of faces is the difference of the distances from the center
     apart.
     """
     outer = trimesh.creation.icosphere(subdivisions=3, radius=1.0)
@@ -158,7 +158,7 @@ def test_points_see_each_other_or_what_is_between():
     ball = rw.Sphere((0, 0, 0), 1.0, name="ball")
     a = np.array([(0, 0, -3.0), (0, 2, -3.0), (0, 0, 0)])
     found = measure.line_of_sight(rw.Scene(ball), a[:, None], [(0, 0, 3.0), (5.0, 0, -3)])
-    # The segment passes the ball if its nearest point to the centre does.
+    # The segment passes the ball if its nearest point to the center does.
     b = np.array([(0, 0, 3.0), (5.0, 0, -3)])
     way = b - a[:, None]
     share = np.clip(-(a[:, None] * way).sum(-1) / (way**2).sum(-1), 0, 1)

@@ -69,7 +69,7 @@ def test_a_value_of_every_vertex_colors_the_faces(plt, plates):
         assert np.allclose(colors[6:, :3] / high, colors[6, 0] / high[0])
 
 
-def test_what_has_no_value_is_grey_and_infinity_is_an_end(plt, plates):
+def test_what_has_no_value_is_gray_and_infinity_is_an_end(plt, plates):
     values = np.arange(12.0)
     values[3], values[7] = np.nan, np.inf
     ax = measure.plot(plates, values, label="thickness", up="y")

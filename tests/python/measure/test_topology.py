@@ -111,7 +111,7 @@ def test_arrays_are_hit_where_they_are(soup):
 
 
 def test_corners_within_edges_are_told(box):
-    """A wall of which the neighbour has a corner in the middle of an edge closes, to rounding."""
+    """A wall of which the neighbor has a corner in the middle of an edge closes, to rounding."""
     middle = (box.vertices[0] + box.vertices[1]) / 3
     corners = np.concatenate([box.vertices, [middle]])
     edge = {0, 1}

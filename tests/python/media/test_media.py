@@ -54,13 +54,13 @@ def test_a_white_ball_in_an_even_sky_is_invisible(name, depth):
     assert_invisible(rw.Scene([ball(rw.MediumInterface(medium))], environment=SKY), 16 if depth > 10 else 64)
 
 
-def test_so_is_one_of_noise_of_colours_and_of_glass():
+def test_so_is_one_of_noise_of_colors_and_of_glass():
     box = [(-1, -1, -1), (1, 1, 1)]
     for at in ("corners", "centers"):
         cloud = rw.GridMedium(NOISE, box, scattering=(1, 5, 20), phase=rw.HenyeyGreenstein(0.6), at=at)
         assert_invisible(rw.Scene([ball(rw.MediumInterface(cloud))], environment=SKY))
-    coloured = rw.Homogeneous(0.0, (0.1, 2.0, 9.0))
-    assert_invisible(rw.Scene([ball(rw.MediumInterface(coloured))], environment=SKY))
+    colored = rw.Homogeneous(0.0, (0.1, 2.0, 9.0))
+    assert_invisible(rw.Scene([ball(rw.MediumInterface(colored))], environment=SKY))
     for roughness in (0.0, 0.4):
         # On average, rough glass compensates its loss to half a percent.
         glass = rw.Dielectric(1.4, roughness, interior=rw.Homogeneous(0.0, 3.0))

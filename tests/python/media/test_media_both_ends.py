@@ -31,7 +31,7 @@ def swirl():
 
 
 def stained():
-    """A cloud whose colours get very far apart, so that what decides how far light gets does too."""
+    """A cloud whose colors get very far apart, so that what decides how far light gets does too."""
     density = np.random.default_rng(3).uniform(0, 1, (6, 6, 6))
     bounds = [(-1, -1, 0.2), (1, 1, 1.2)]
     cloud = rw.GridMedium(density, bounds, absorption=(6.0, 1.0, 0.1), scattering=(0.6, 0.3, 0.1))
@@ -42,7 +42,7 @@ FLOOR = square(3, 0, material=rw.Diffuse((0.7, 0.6, 0.5)))
 MILK = rw.Dielectric(1.33, roughness=0.4, interior=rw.Homogeneous((0.1, 0.2, 0.4), 3.0))
 SCENES = {
     "smoke": rw.Scene([FLOOR, lamp(), smoke()]),
-    "coloured": rw.Scene([FLOOR, lamp(), smoke((0.1, 0.2, 0.4), (1.2, 0.6, 0.3), -0.3)]),
+    "colored": rw.Scene([FLOOR, lamp(), smoke((0.1, 0.2, 0.4), (1.2, 0.6, 0.3), -0.3)]),
     "cloud": rw.Scene([FLOOR, lamp(size=1.0), swirl()]),
     "stained": rw.Scene([FLOOR, lamp(size=1.0), stained()]),
     "milk": rw.Scene([FLOOR, lamp(), rw.Sphere((0, 0, 0.7), 0.6, material=MILK)]),
@@ -58,7 +58,7 @@ SCENES = {
 # Each scene is seen in one way, and in both where there is time.
 QUICK = {
     "traced": ("smoke", "stained", "sun"),
-    "both": ("coloured", "stained", "milk", "fog", "sky", "lamp within", "veiled"),
+    "both": ("colored", "stained", "milk", "fog", "sky", "lamp within", "veiled"),
 }
 EACH = [
     pytest.param(name, way, marks=() if name in QUICK[way] else slow, id=f"{name}-{way}")

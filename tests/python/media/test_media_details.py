@@ -37,7 +37,7 @@ def floor(**how):
 )
 @pytest.mark.parametrize("how", ["reflects", "shines"])
 def test_haze_leaves_textures_filtered(integrator, how):
-    # Far away a checker is finer than pixels: unfiltered samples are black or white, filtered ones grey.
+    # Far away a checker is finer than pixels: unfiltered samples are black or white, filtered ones gray.
     texture = picture_on_a_floor()
     looks = {"material": rw.Diffuse(texture)} if how == "reflects" else {"emission": texture}
     ground = floor(**{"material": BLACK, **looks})

@@ -1,4 +1,4 @@
-"""Grids of albedos, temperatures and colours, and grids that are mostly empty."""
+"""Grids of albedos, temperatures and colors, and grids that are mostly empty."""
 
 import math
 import pickle
@@ -19,10 +19,10 @@ ONE = np.ones((1, 1, 1))
 RAMP = np.linspace(0, 1, 33).reshape(1, 1, 33)
 # A spectral material out of sight makes the whole scene spectral.
 ASIDE = rw.Sphere((500, 0, 0), 1.0, material=rw.Diffuse(rw.Spectrum([360, 830], [0.2, 0.6])))
-WAYS = pytest.mark.parametrize("by", ["colours", "wavelengths"])
+WAYS = pytest.mark.parametrize("by", ["colors", "wavelengths"])
 
 
-def scene(medium, by="colours", **arguments):
+def scene(medium, by="colors", **arguments):
     shapes = [rw.Box(*BOX, material=rw.MediumInterface(medium)), *([ASIDE] if by == "wavelengths" else [])]
     found = rw.Scene(shapes, **arguments)
     assert (found.wavelengths is not None) == (by == "wavelengths")
@@ -30,7 +30,7 @@ def scene(medium, by="colours", **arguments):
 
 
 def assert_looks(scene, samples, expected, integrator=None, most=0.004):
-    """Seen from above, each colour within four standard errors, which chance exceeds once in 16,000, and a
+    """Seen from above, each color within four standard errors, which chance exceeds once in 16,000, and a
     ten-thousandth for tables and float32 ; errors of at most 0.4 % of the brightest."""
     image = rw.render(scene, media.looking(side=16), integrator or rw.Path(), samples, seed=5, progress=False)
     values = image.rgb.reshape(-1, 3).astype(float)
@@ -47,19 +47,19 @@ def black_body(kelvin, brightness=1.0):
     return brightness * np.array(rw.Spectrum(nm, planck(nm, kelvin) / most).rgb)
 
 
-def seen(colour, by):
-    """The colour of an albedo as rendered: from a table of spectra, a little off at the edge of the gamut."""
-    if by == "colours":
-        return colour
+def seen(color, by):
+    """The color of an albedo as rendered: from a table of spectra, a little off at the edge of the gamut."""
+    if by == "colors":
+        return color
     nm = np.arange(360.0, 831.0)
-    shares = _core.smooth_spectrum(colour.tolist(), True, True, nm.tolist())
+    shares = _core.smooth_spectrum(color.tolist(), True, True, nm.tolist())
     return _core.spectrum_rgb(np.stack([nm, shares], axis=1).tolist(), True)
 
 
 @WAYS
-def test_albedos_on_a_grid_colour_what_is_scattered_once(by):
+def test_albedos_on_a_grid_color_what_is_scattered_once(by):
     """In the sun from above, seen from above: of an albedo w(z) and an extinction s, ∫ w(z) s exp(-2 s z) dz
-    over 4, where the sun's irradiance is π. Where all are dimmed alike, that has the albedo's colour."""
+    over 4, where the sun's irradiance is π. Where all are dimmed alike, that has the albedo's color."""
     albedo = np.concatenate([0.9 * RAMP, 0.2 + 0.3 * RAMP, 0.5 - 0.5 * RAMP], axis=0).transpose(1, 2, 0)
     density = np.full((2, 2, 2), 0.5)
     smoke = rw.GridMedium(density, BOX, extinction=1.6, albedo=albedo[None])
@@ -84,24 +84,24 @@ def test_an_albedo_that_is_the_same_everywhere_is_what_absorption_and_scattering
     assert np.allclose(*pictures, rtol=1e-5)
 
 
-def test_colours_of_the_density_dim_each_by_its_own():
-    colours = np.array([0.2, 1.0, 0.5])
-    smoke = rw.GridMedium(RAMP[..., None] * colours, BOX, absorption=(1.0, 0.5, 2.0))
+def test_colors_of_the_density_dim_each_by_its_own():
+    colors = np.array([0.2, 1.0, 0.5])
+    smoke = rw.GridMedium(RAMP[..., None] * colors, BOX, absorption=(1.0, 0.5, 2.0))
     # The mean of the ramp over a distance of 3.
-    expected = np.exp(-1.5 * colours * (1.0, 0.5, 2.0))
+    expected = np.exp(-1.5 * colors * (1.0, 0.5, 2.0))
     assert_looks(scene(smoke, environment=SKY), 512, expected)
 
 
 @WAYS
-def test_what_glows_by_the_colours_of_its_density(by):
-    colours = np.array([0.9, 0.4, 0.1])
-    smoke = rw.GridMedium(RAMP[..., None] * colours, BOX, emission=0.5)
+def test_what_glows_by_the_colors_of_its_density(by):
+    colors = np.array([0.9, 0.4, 0.1])
+    smoke = rw.GridMedium(RAMP[..., None] * colors, BOX, emission=0.5)
     if by == "wavelengths":
         # Up to the table of smooth spectra, where blue is off by 0.002.
         nm = np.arange(360.0, 831.0)
-        smooth = _core.smooth_spectrum(colours.tolist(), False, True, nm.tolist())
-        colours = np.array(_core.spectrum_rgb(np.stack([nm, smooth], axis=1).tolist(), True))
-    assert_looks(scene(smoke, by), 256, 0.5 * 1.5 * colours)
+        smooth = _core.smooth_spectrum(colors.tolist(), False, True, nm.tolist())
+        colors = np.array(_core.spectrum_rgb(np.stack([nm, smooth], axis=1).tolist(), True))
+    assert_looks(scene(smoke, by), 256, 0.5 * 1.5 * colors)
 
 
 @WAYS
@@ -173,10 +173,10 @@ def test_a_sparse_grid_gives_the_bits_of_an_array(at):
     assert np.array_equal(pictures[0], pictures[2])
 
 
-@pytest.mark.parametrize("coloured", [False, True])
-def test_sparse_grids_keep_their_numbers(coloured):
+@pytest.mark.parametrize("colored", [False, True])
+def test_sparse_grids_keep_their_numbers(colored):
     numbers = puffs()
-    if coloured:
+    if colored:
         numbers = numbers[..., None] * np.array([1, 2, 3], np.float32)
     grid = rw.media.SparseGrid.of(numbers)
     assert np.array_equal(grid.dense(), numbers)

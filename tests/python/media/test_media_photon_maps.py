@@ -40,7 +40,7 @@ SCENES = {
     "cloud": rw.Scene([FLOOR, LAMP, cloud()]),
     "milk": rw.Scene([FLOOR, LAMP, rw.Sphere((0, 0, 0.6), 0.5, material=MILK)]),
     # By wavelength: glass that disperses, in haze that scatters blue light most.
-    "colours": rw.Scene(
+    "colors": rw.Scene(
         [
             FLOOR,
             LAMP,
@@ -72,7 +72,7 @@ QUICK = {
     ("cloud", "progressive"),
     ("milk", "gathered"),
     ("tinted", "fixed"),
-    ("colours", "progressive"),
+    ("colors", "progressive"),
 }
 EACH = [
     pytest.param(name, way, marks=() if (name, way) in QUICK else slow, id=f"{name}-{way}")

@@ -13,8 +13,8 @@ LAMP = rw.PointLight((0, 0, 0), 1.0)
 NEVER = 2**31
 
 
-def ball(material, radius=1.0, centre=(0, 0, 0)):
-    return rw.Sphere(centre, radius, material=material)
+def ball(material, radius=1.0, center=(0, 0, 0)):
+    return rw.Sphere(center, radius, material=material)
 
 
 def square(height, size=3.0, material=BLACK):
@@ -65,7 +65,7 @@ def test_no_power_is_lost():
     np.testing.assert_allclose(total(first, rest), first.emitted, rtol=1e-9)
 
 
-def test_colours_are_absorbed_on_average_as_they_should_be():
+def test_colors_are_absorbed_on_average_as_they_should_be():
     # In infinite fog every photon is absorbed: with probability 1 - w per collision, so that it has 1 / (1 -
     # w) of them.
     absorption, scattering = np.array([0.5, 1.0, 2.0]), np.array([0.5, 2.0, 1.0])

@@ -33,7 +33,7 @@ SCENES = {
     "forward": lambda: filled(thick(0.8), sky=0.3),
     "backward": lambda: filled(thick(-0.6), lights=[SUN]),
     "Rayleigh": lambda: filled(rw.Homogeneous(0.1, 1.5, phase=rw.media.Rayleigh()), lights=[SUN]),
-    "coloured": lambda: filled(rw.Homogeneous((0.1, 0.3, 0.0), (0.3, 1.0, 6.0)), sky=(1.0, 0.7, 0.4)),
+    "colored": lambda: filled(rw.Homogeneous((0.1, 0.3, 0.0), (0.3, 1.0, 6.0)), sky=(1.0, 0.7, 0.4)),
     "one channel": lambda: filled(rw.Homogeneous(0.5, (0.0, 2.0, 0.0)), sky=0.5),
     "things in it": lambda: filled(
         thick(0.4),

@@ -19,12 +19,12 @@ def smoke(density, **more):
     )
 
 
-def trilinear(density, box, points, *, centres=False):
+def trilinear(density, box, points, *, centers=False):
     """Numbers at the corners of cells, or in their middles, interpolated along each axis."""
     low, high = np.array(box, float)
     count = np.array(density.shape[:3])
     u = (points - low) / (high - low)
-    steps = np.clip(u * count - 0.5 if centres else u * (count - 1), 0, count - 1)
+    steps = np.clip(u * count - 0.5 if centers else u * (count - 1), 0, count - 1)
     first = np.minimum(steps.astype(int), np.maximum(count - 2, 0))
     part = steps - first
     value = 0.0
@@ -35,12 +35,12 @@ def trilinear(density, box, points, *, centres=False):
     return value * ((u >= 0) & (u <= 1)).all(axis=-1)
 
 
-def borders(density, box, origin, direction, end, *, centres=False):
+def borders(density, box, origin, direction, end, *, centers=False):
     """The parameters at which a ray comes from one cell into another, its ends among them."""
     low, high = np.array(box, float)
     found = [np.array([0.0, end])]
     for axis, count in enumerate(density.shape[:3]):
-        steps = (np.arange(count) + 0.5) / count if centres else np.linspace(0, 1, count)
+        steps = (np.arange(count) + 0.5) / count if centers else np.linspace(0, 1, count)
         places = np.concatenate([[0.0, 1.0], steps]) * (high[axis] - low[axis]) + low[axis]
         found.append((places - origin[axis]) / direction[axis])
     return np.sort(np.clip(np.concatenate(found), 0.0, end))
@@ -56,10 +56,10 @@ def test_optical_depths_of_grids_are_the_integrals_of_their_densities(at):
     # Gauss's rule of three points between borders of cells, by an interpolation of its own.
     nodes, weights = np.polynomial.legendre.leggauss(3)
     for origin, direction, end, depth in zip(origins, directions, t_max, found, strict=True):
-        t = borders(BLOBS, BOX, origin, direction, end, centres=at == "centers")
+        t = borders(BLOBS, BOX, origin, direction, end, centers=at == "centers")
         middle, half = (t[1:] + t[:-1]) / 2, (t[1:] - t[:-1]) / 2
         points = origin + (middle[:, None] + half[:, None] * nodes)[..., None] * direction
-        density = trilinear(BLOBS, BOX, points, centres=at == "centers")
+        density = trilinear(BLOBS, BOX, points, centers=at == "centers")
         expected = (density * weights * half[:, None]).sum() * np.linalg.norm(direction)
         np.testing.assert_allclose(depth, expected, rtol=1e-9, atol=1e-9)
     assert found.max() > 1
@@ -88,7 +88,7 @@ def test_media_in_one_another_and_around_all():
         rw.Mesh([(-9, -9, 0), (9, -9, 0), (0, 9, 0)], [(0, 1, 2)], material=BLACK),
     ]
     scene = rw.Scene(shapes, medium=rw.Homogeneous(absorption=0.125))
-    # A metre of air, two of smoke, two of glass, and so on; walls do not count.
+    # A meter of air, two of smoke, two of glass, and so on; walls do not count.
     expected = 1 * 0.125 + 1 * 2 + 2 * 0.25 + 1 * 2 + 3 * 0.125
     np.testing.assert_allclose(scene.optical_depth((0, 0, 3), (0, 0, -1), 8.0), expected, rtol=1e-12)
     assert np.isinf(scene.optical_depth((0, 0, 3), (0, 0, -1))).all()
@@ -101,7 +101,7 @@ def test_media_in_one_another_and_around_all():
     np.testing.assert_allclose(copy.optical_depth((0, 0, 9), (0, 0, -1)), 3.0, rtol=1e-12)
 
 
-def test_scenes_by_wavelength_tell_what_those_in_colours_do():
+def test_scenes_by_wavelength_tell_what_those_in_colors_do():
     aside = rw.Sphere((500, 0, 0), 1.0, material=rw.Diffuse(rw.Spectrum([360, 830], [0.2, 0.6])))
     ray = (0.1, 0.2, 5), (0, 0.05, -1)
     for how in (
@@ -189,16 +189,16 @@ def test_an_even_grid_looks_as_what_is_even_everywhere():
         image = rw.render(scene, camera, integrator, samples=256, seed=2, progress=False)
         return image.rgb.astype(float), image.standard_error.astype(float)
 
-    grey = {"absorption": (0.2, 0.3, 0.1), "scattering": (0.5, 0.2, 0.8)}
+    gray = {"absorption": (0.2, 0.3, 0.1), "scattering": (0.5, 0.2, 0.8)}
     for integrator in (rw.Path(), rw.Bidirectional(max_depth=3)):
         a, b = (
-            picture(rw.GridMedium(np.full((3, 3, 3), 1.0), BOX, **grey), integrator),
-            picture(rw.Homogeneous(**grey), integrator),
+            picture(rw.GridMedium(np.full((3, 3, 3), 1.0), BOX, **gray), integrator),
+            picture(rw.Homogeneous(**gray), integrator),
         )
         off = (a[0].mean((0, 1)) - b[0].mean((0, 1))) / np.hypot(
             *(np.sqrt((e**2).mean((0, 1)) / 64) for _, e in (a, b))
         )
-        # Over three colours, five standard errors: once in half a million.
+        # Over three colors, five standard errors: once in half a million.
         assert (np.abs(off) < 5).all(), off
 
 

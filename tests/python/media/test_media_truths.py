@@ -303,8 +303,8 @@ def test_a_ball_that_scatters_and_absorbs():
     # Solved as an integral equation: optical radius 1, albedo 0.5.
     ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(media.of_depth(1.0, 0.5)))
     scene = rw.Scene([ball], environment=SKY)
-    centre = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1e-3, width=8, height=8)
-    media.assert_seen(scene, centre, 512, 0.4104990458)
+    center = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=1e-3, width=8, height=8)
+    media.assert_seen(scene, center, 512, 0.4104990458)
     disk = rw.Orthographic((0, 0, 3), (0, 0, 0), scale=2.0, width=64, height=64)
     image = rw.render(scene, disk, rw.Path(), 16, progress=False)
     mean, share = image.rgb[..., 1].mean(dtype=float), math.pi / 4

@@ -114,9 +114,9 @@ def test_mirrored_nodes_stay_wound_outwards(ball):
         (PBRMaterial(baseColorFactor=[51, 0, 255, 255]), (0.2, 0.0, 1.0)),
         (PBRMaterial(), (0.5, 0.5, 0.5)),
     ],
-    ids=["none", "faces", "vertices", "simple", "pbr", "pbr without colour"],
+    ids=["none", "faces", "vertices", "simple", "pbr", "pbr without color"],
 )
-def test_colours_become_linear_reflectances(visual, reflectance):
+def test_colors_become_linear_reflectances(visual, reflectance):
     box = trimesh.creation.box()
     if isinstance(visual, dict):
         box.visual = trimesh.visual.ColorVisuals(box, **visual)

@@ -181,7 +181,7 @@ def test_what_is_broken_is_refused(tmp_path, lines, message):
     assert len(str(caught.value)) < 250 + len(str(tmp_path))
 
 
-def test_colours_of_vertices_are_srgb(tmp_path):
+def test_colors_of_vertices_are_srgb(tmp_path):
     points = "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n"
     (mesh,) = read(tmp_path, points)
     assert mesh.material == rw.Diffuse(rw.VertexColors())

@@ -62,14 +62,14 @@ def test_what_shines_may_be_brighter_than_white_in_pictures_too(tmp_path):
     assert np.allclose(seen(mesh), (10, 12, 14), rtol=1e-6, atol=0)
 
 
-def test_colours_are_linear(tmp_path):
+def test_colors_are_linear(tmp_path):
     assert material(tmp_path, "Kd 0.2 0.5 0.8") == rw.Diffuse((0.2, 0.5, 0.8))
     assert material(tmp_path, "kd 0.25") == rw.Diffuse(0.25)
     assert material(tmp_path, "") == rw.Diffuse()
-    pixels = picture(tmp_path, "base colour.png", PIXELS[..., :3])
-    # As in Blender and trimesh: most programs write black or grey beside a picture.
+    pixels = picture(tmp_path, "base color.png", PIXELS[..., :3])
+    # As in Blender and trimesh: most programs write black or gray beside a picture.
     for color in ("", "Kd 0 0 0\n", "Kd 0.8 0.8 0.8\n"):
-        assert material(tmp_path, f"{color}map_Kd base colour.png") == rw.Diffuse(rw.ImageTexture(pixels))
+        assert material(tmp_path, f"{color}map_Kd base color.png") == rw.Diffuse(rw.ImageTexture(pixels))
 
 
 @pytest.mark.parametrize(("exponent", "specular"), [(1.5, 0.4), (10, 1.0), (96, 0.5), (1000, 0.9)])
@@ -159,8 +159,8 @@ def test_pictures_of_holes(tmp_path):
     assert both.opacity == rw.textures.ProductTexture(rw.ImageTexture(leaf, linear=True, channel="a"), 0.5)
     # Without alpha, or with full alpha, brightness decides.
     full = picture(tmp_path, "full.png", np.dstack([PIXELS[..., :3], np.full((4, 4), 255)]))
-    grey = picture(tmp_path, "grey.png", PIXELS[..., 0])
-    for name, pixels in (("full.png", full), ("grey.png", grey)):
+    gray = picture(tmp_path, "gray.png", PIXELS[..., 0])
+    for name, pixels in (("full.png", full), ("gray.png", gray)):
         assert material(tmp_path, f"map_d {name}").opacity == rw.ImageTexture(pixels, linear=True)
 
 
@@ -428,7 +428,7 @@ def test_trimesh_and_files_give_the_same_looks(tmp_path):
         mesh, held = loaded(path), trimesh.load(path, process=False)
         (here,) = rw.Scene(held).shapes
         assert (here.material, here.emission) == (mesh.material, mesh.emission)
-    # Painted since, by an object with sRGB colours.
+    # Painted since, by an object with sRGB colors.
     held = trimesh.load(write(tmp_path, "Kd 0.1 0.2 0.3"), process=False)
     held.visual.material.diffuse = [188, 0, 255, 255]
     (mesh,) = rw.Scene(held).shapes

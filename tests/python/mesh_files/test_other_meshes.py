@@ -124,7 +124,7 @@ def test_what_is_no_mesh_is_refused_by_its_name(pair, error, told):
             take(pair)
 
 
-def test_nothing_is_imported_to_recognise_anything():
+def test_nothing_is_imported_to_recognize_anything():
     code = (
         "import sys, numpy as np, raywright as rw; from raywright.shapes.sources import SOURCES;"
         "pair = np.eye(3), np.array([[0, 1, 2]]); rw.Scene([pair, {'a': rw.Mesh.of(pair)}]);"

@@ -128,7 +128,7 @@ def test_quads_become_the_fans_that_their_corners_allow():
 
 
 def _is_simple(quad):
-    """Whether no two sides of a quad that are no neighbours meet, and no corner is there twice."""
+    """Whether no two sides of a quad that are no neighbors meet, and no corner is there twice."""
 
     def side(a, b, p):
         return np.sign((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]))

@@ -198,7 +198,7 @@ def test_bad_rays_are_refused_in_one_line(scene, ask, arguments, error, message)
 
 @pytest.mark.parametrize("part", ["t_min", "t_max"])
 @pytest.mark.parametrize("size", [1e300, np.inf])
-def test_rays_asked_for_nothing_leave_their_neighbours_alone(part, size):
+def test_rays_asked_for_nothing_leave_their_neighbors_alone(part, size):
     # Sixty-four squares, one below the other, and rays straight down, from the first or the eighth.
     square = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
     depth = np.arange(64)[:, None]

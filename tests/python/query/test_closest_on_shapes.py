@@ -195,8 +195,8 @@ def test_boxes_and_planes_have_their_closed_forms():
     assert np.allclose(squeezed.closest_point(points).distance, expected, rtol=0, atol=2e-15)
 
 
-def test_at_the_centre_any_of_the_nearest_will_do():
-    centre = np.zeros(3)
+def test_at_the_center_any_of_the_nearest_will_do():
+    center = np.zeros(3)
     for shape, expected in [
         (rw.Sphere((0, 0, 0), 2), 2.0),
         (rw.shapes.Ellipsoid((0, 0, 0), (3, 0.5, 0.5)), 0.5),
@@ -206,7 +206,7 @@ def test_at_the_centre_any_of_the_nearest_will_do():
         (rw.Disk((0, 0, 0), (0, 0, 1), 2, 0.5), 0.5),
         (rw.Cone((0, 0, 0), (0, 0, 2), 1, 0), 0.0),
     ]:
-        closest = rw.Scene(shape).closest_point(centre)
+        closest = rw.Scene(shape).closest_point(center)
         assert closest.distance == pytest.approx(expected, rel=1e-15, abs=1e-15)
         assert np.isfinite(closest.position).all()
         assert np.isfinite(closest.normal).all()

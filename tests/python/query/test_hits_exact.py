@@ -25,8 +25,8 @@ def fixed(examples):
 
 def soup(rng, count, size=0.5, scale=1.0):
     """Triangles of about `size` in the cube from -1 to 1, times `scale`, no two sharing a vertex."""
-    centres = rng.uniform(-1, 1, (count, 1, 3))
-    corners = (centres + rng.uniform(-size, size, (count, 3, 3))) * scale
+    centers = rng.uniform(-1, 1, (count, 1, 3))
+    corners = (centers + rng.uniform(-size, size, (count, 3, 3))) * scale
     return rw.Mesh(corners.reshape(-1, 3).astype(np.float32), np.arange(3 * count).reshape(-1, 3))
 
 

@@ -63,14 +63,14 @@ def test_vertices_edges_and_along_edges_at_any_scale_and_place(scale, offset, dt
     mesh = placed(scale, offset, dtype)
     # At 1e5 an f32 resolves the vertices to a hundredth: the surface differs, but is still closed.
     scene = rw.Scene(mesh, precision="double" if dtype is np.float64 else "single")
-    centre = (mesh.bounds[0] + mesh.bounds[1]) / 2
+    center = (mesh.bounds[0] + mesh.bounds[1]) / 2
     failed = 0
     # Half of the rays from inside, half from outside.
     for _ in range(COUNT // BATCH // 2):
         targets = goals(rng, mesh, BATCH)
-        inner = (centre + 0.2 * scale * ways(rng, BATCH) * rng.uniform(0, 1, (BATCH, 1))).astype(dtype)
+        inner = (center + 0.2 * scale * ways(rng, BATCH) * rng.uniform(0, 1, (BATCH, 1))).astype(dtype)
         failed += failures(scene, inner, (targets - inner).astype(dtype), inside=True)
-        outer = (centre + 4 * scale * ways(rng, BATCH)).astype(dtype)
+        outer = (center + 4 * scale * ways(rng, BATCH)).astype(dtype)
         failed += failures(scene, outer, (targets - outer).astype(dtype), inside=False)
     # Along edges: from beyond one end of an edge towards the other.
     ends = mesh.vertices.astype(np.float64)[mesh.faces[rng.integers(len(mesh.faces), size=BATCH), :2]]

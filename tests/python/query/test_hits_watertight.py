@@ -20,7 +20,7 @@ def sphere():
 
 
 def noisy_sphere():
-    """Radii from 0.6 to 1.4 at random: spikes, slivers and hollows; the centre stays inside."""
+    """Radii from 0.6 to 1.4 at random: spikes, slivers and hollows; the center stays inside."""
     vertices, faces = sphere()
     rng = np.random.default_rng(0)
     return vertices * rng.uniform(0.6, 1.4, (len(vertices), 1)), faces
@@ -37,7 +37,7 @@ def torus():
     return mesh.vertices, mesh.faces
 
 
-# Each with a ball's radius around points that are inside it: the centre, or for the torus, a circle.
+# Each with a ball's radius around points that are inside it: the center, or for the torus, a circle.
 MESHES = {
     "sphere": (sphere, 0.9),
     "noisy sphere": (noisy_sphere, 0.1),
@@ -56,7 +56,7 @@ def placed(name, scale, offset):
 
 
 def inside(rng, name, room, count):
-    """Points inside: in a ball around the centre, in one around points of the torus's circle."""
+    """Points inside: in a ball around the center, in one around points of the torus's circle."""
     ways = rng.normal(size=(count, 3))
     points = ways / np.linalg.norm(ways, axis=1, keepdims=True) * room * rng.uniform(0, 1, (count, 1))
     points[: count // 10] = 0.0
@@ -100,11 +100,11 @@ def test_rays_aimed_at_a_convex_mesh_stop_at_their_target(name, scale, offset, d
     mesh, room = placed(name, scale, offset)
     scene = rw.Scene(mesh)
     goals = targets(rng, mesh, 4_000)
-    centred = goals / scale - offset
+    centered = goals / scale - offset
     inner = inside(rng, name, room, len(goals))
     # Outside, within about 45 degrees of a normal: seen so, a target cannot be beyond the rim.
     sideways = rng.normal(size=inner.shape) * 0.3
-    outer = centred * 3 + sideways
+    outer = centered * 3 + sideways
     for starts in (inner, outer):
         origins = ((starts + offset) * scale).astype(dtype)
         hits = scene.intersect(origins, (goals - origins).astype(dtype))

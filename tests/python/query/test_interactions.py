@@ -1,4 +1,4 @@
-"""What batches of rays meet: faces, colours, and where smooth surfaces send them."""
+"""What batches of rays meet: faces, colors, and where smooth surfaces send them."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def test_faces_and_coordinates_are_those_of_hits(box):
         assert np.isnan(getattr(outside, name)).all()
 
 
-def test_colours_and_indices_are_those_of_materials():
+def test_colors_and_indices_are_those_of_materials():
     materials = [rw.Diffuse((0.2, 0.4, 0.6)), rw.Mirror(0.7), rw.Dielectric(1.33), rw.ThinDielectric(1.5)]
     shapes = [rw.Sphere((3.0 * i, 0, 0), 1, material=material) for i, material in enumerate(materials)]
     here = rw.Scene(shapes).interactions(rays([(3.0 * i, 0, 5) for i in range(4)], [(0.0, 0, -1)] * 4))

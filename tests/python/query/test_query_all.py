@@ -21,8 +21,8 @@ KNOT = rw.scenes.torus_knot(along=60, around=8)
 def grid_sphere():
     """A closed mesh of small integers: a ball's shell of cubes, with edges and vertices on grid lines."""
     solid = np.zeros((7, 7, 7), bool)
-    centre = np.indices((5, 5, 5)) - 2
-    solid[1:6, 1:6, 1:6] = (centre**2).sum(axis=0) <= 5
+    center = np.indices((5, 5, 5)) - 2
+    solid[1:6, 1:6, 1:6] = (center**2).sum(axis=0) <= 5
     corners, faces = [], []
     for axis in range(3):
         for step, quad in ((1, ((0, 0), (1, 0), (1, 1), (0, 1))), (-1, ((0, 0), (0, 1), (1, 1), (1, 0)))):

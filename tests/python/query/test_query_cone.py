@@ -1,4 +1,4 @@
-"""Cones touch what has a point in them: by brute force, samples, an optimiser and closed forms."""
+"""Cones touch what has a point in them: by brute force, samples, an optimizer and closed forms."""
 
 import numpy as np
 import pytest
@@ -73,7 +73,7 @@ def test_a_square_has_its_distances_in_closed_form():
     assert scene.faces_in_cone((0, 0, 2), (0, 0, 1), 89).count == 0
 
 
-def nearest_by_optimiser(corners, apex, axis, angle):
+def nearest_by_optimizer(corners, apex, axis, angle):
     """Return the least distance over weights of corners; None where no start leads into the cone."""
     cosine = np.cos(np.radians(angle))
 
@@ -101,7 +101,7 @@ def nearest_by_optimiser(corners, apex, axis, angle):
     return best
 
 
-def test_distances_are_those_of_an_optimiser():
+def test_distances_are_those_of_an_optimizer():
     rng = np.random.default_rng(4)
     agreed = 0
     for _ in range(75):
@@ -109,7 +109,7 @@ def test_distances_are_those_of_an_optimiser():
         axis = rng.normal(size=3)
         axis /= np.linalg.norm(axis)
         angle = rng.choice([5, 20, 45, 70])
-        wanted = nearest_by_optimiser(corners, apex, axis, angle)
+        wanted = nearest_by_optimizer(corners, apex, axis, angle)
         found = rw.Scene(rw.Mesh(corners, [(0, 1, 2)]), precision="double").faces_in_cone(apex, axis, angle)
         if wanted is not None:
             assert found.distance == pytest.approx([wanted], rel=1e-5, abs=1e-6)

@@ -1,4 +1,4 @@
-"""What is rasterised is what rays hit, to the last bit."""
+"""What is rasterized is what rays hit, to the last bit."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_soups_from_outside_and_from_within(count, size, dtype):
         assert count < 200 or hits.hit.any()
 
 
-def test_few_faces_are_rasterised_and_many_are_left_to_the_tree(box):
+def test_few_faces_are_rasterized_and_many_are_left_to_the_tree(box):
     camera = rw.Camera((1.5, 1.2, 4), (0.5, 0.5, 0.5), width=200, height=150)
     assert agree(rw.Scene(box), camera)[1] == 0
     assert agree(rw.Scene(soup(np.random.default_rng(0), 20000, 0.3)), camera)[1] > 0.5
@@ -57,14 +57,14 @@ def test_scenes_of_the_library():
     for shapes in ([rw.scenes.torus_knot()], rw.scenes.city(), rw.scenes.terrain()):
         scene = rw.Scene(shapes)
         bounds = scene._compiled().bounds
-        centre, size = bounds.mean(axis=0), np.ptp(bounds, axis=0).max()
+        center, size = bounds.mean(axis=0), np.ptp(bounds, axis=0).max()
         for shift in [(0.7, 0.4, 1.0), (0.0, 0.001, 0.01), (-30, 10, 5)]:
-            camera = rw.Camera(centre + size * np.array(shift), centre, width=192, height=128)
+            camera = rw.Camera(center + size * np.array(shift), center, width=192, height=128)
             agree(scene, camera)
 
 
 def test_shared_edges_are_seen_by_the_lowest_face_as_rays_see_them():
-    # Pixel centres on edges and corners: a camera straight above a grid of squares of one pixel each.
+    # Pixel centers on edges and corners: a camera straight above a grid of squares of one pixel each.
     n = 16
     x, y = np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0), indexing="ij")
     vertices = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
@@ -163,7 +163,7 @@ def test_what_is_no_camera_is_refused(scene, camera):
 
 def test_the_report_tells_both_and_finds_no_difference(scene, camera):
     table = rw.report.first_hits(scene, camera, repeats=1)
-    assert table.column("way") == ("rays at hand", "rays made", "rasterised")
+    assert table.column("way") == ("rays at hand", "rays made", "rasterized")
     assert table.column("wrong") == (0, 0, 0)
     assert table.column("by_tree")[:2] == (1.0, 1.0)
     assert all(ms > 0 for ms in table.column("ms"))

@@ -260,7 +260,7 @@ def test_pickled_points_are_left_as_they_were(box, shapes):
     assert np.array_equal(back.spawn_rays((1, 2, 3)).origins, left)
 
 
-def test_rasterised_and_picked_hits_are_left_too(scene, camera):
+def test_rasterized_and_picked_hits_are_left_too(scene, camera):
     for hits in (scene.first_hits(camera), scene.pick(camera, np.arange(8), 3)):
         assert hits.hit.any()
         assert not scene.occluded(*hits.spawn_rays(hits.normal)).any()

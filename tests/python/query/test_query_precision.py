@@ -18,14 +18,14 @@ def ball(scale=1.0, offset=0.0, subdivisions=1):
 def aimed(mesh, rng, count, inside=False):
     """Rays at vertices, middles of edges and anywhere on faces, as exactly as f64 can aim."""
     low, high = mesh.bounds
-    centre, size = (low + high) / 2, (high - low).max()
+    center, size = (low + high) / 2, (high - low).max()
     start = rng.normal(size=(count, 3))
     start *= size * (0.2 if inside else 1.5) / np.linalg.norm(start, axis=1, keepdims=True)
     corners = mesh.vertices[mesh.faces[rng.integers(0, len(mesh.faces), count)]]
     weights = rng.dirichlet((1.0, 1, 1), count)
     weights[::3] = (1, 0, 0)
     weights[1::3] = (0.5, 0.5, 0)
-    origins = centre + start
+    origins = center + start
     return origins, (weights[..., None] * corners).sum(axis=1) - origins
 
 

@@ -148,7 +148,7 @@ def test_aovs_alone_take_their_own_samples():
     assert np.array_equal(alpha, again.aov["alpha"])
 
 
-def test_png_holds_colours_by_themselves_and_exr_those_times_alpha(tmp_path):
+def test_png_holds_colors_by_themselves_and_exr_those_times_alpha(tmp_path):
     scene = rw.Scene(lamp(emission=(0.4, 0.2, 0.1)), environment=50.0)
     image = rw.render(scene, CAMERA, background="transparent", aov="alpha", **HOW)
     for name in ("a.png", "a.webp", "a.exr", "a.jpg"):
@@ -159,7 +159,7 @@ def test_png_holds_colours_by_themselves_and_exr_those_times_alpha(tmp_path):
     rim = (image.alpha > 0.1) & (image.alpha < 0.9)
     assert rim.sum() > 10
     whole = rw.io.shown.srgb(np.array([[[0.4, 0.2, 0.1]]], np.float32))[0, 0].astype(int)
-    # However small the coverage of a pixel, its colour is that of the surface.
+    # However small the coverage of a pixel, its color is that of the surface.
     assert np.abs(pixels[image.alpha > 0][:, :3] - whole).max() <= 1
     assert np.array_equal(pixels[..., 3], np.floor(image.alpha.clip(0, 1).astype(float) * 255 + 0.5))
     assert np.array_equal(pixels, image.srgb())

@@ -30,7 +30,7 @@ def reference(scene, camera, samples=1024):
 
 
 def checkered(side):
-    """A floor of small squares, whose light is even and whose colour is not."""
+    """A floor of small squares, whose light is even and whose color is not."""
     corners = [(-4, 0, -8), (4, 0, -8), (4, 0, 2), (-4, 0, 2)]
     squares = rw.Diffuse(rw.Checker(0.05, 0.9, 16))
     floor = rw.Mesh(corners, [(0, 2, 1), (0, 3, 2)], uv=[(0, 0), (1, 0), (1, 1), (0, 1)], material=squares)

@@ -46,8 +46,8 @@ def room(box, reflectance, emission, scale=1.0, shift=0.0):
 
 
 def inside(scale=1.0, shift=0.0, size=16):
-    centre = np.full(3, shift + scale / 2)
-    return rw.Camera(centre, centre + scale * np.array([0.2, 0.1, -1]), fov=80, width=size, height=size)
+    center = np.full(3, shift + scale / 2)
+    return rw.Camera(center, center + scale * np.array([0.2, 0.1, -1]), fov=80, width=size, height=size)
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e3, 1e6])
@@ -174,7 +174,7 @@ def test_a_coarse_ball_has_no_facets_at_its_terminator():
     assert (image[seen] <= lambert[seen] + 0.05).all()
     assert (image[seen] >= (lambert * (g + g**2 - g**3))[seen] - 0.05).all()
     assert not image[seen & (cosine < -0.3)].any()
-    # Neighbours differ by less than a cut-off at a facet would give: the sine of the tilt.
+    # Neighbors differ by less than a cut-off at a facet would give: the sine of the tilt.
     step = np.abs(np.diff(image, axis=1))[(seen & np.roll(seen, -1, 1))[:, :-1]]
     assert step.max() < math.sin(math.atan(tilt))
 

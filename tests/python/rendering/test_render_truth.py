@@ -67,8 +67,8 @@ def test_white_furnace_shines_so_many_bounces(box, depth):
 
 @pytest.mark.parametrize(("scale", "shift"), [(1e-6, 0), (1e6, 0), (1.0, 1e6), (64.0, 1e7), (1e-3, 1.0)])
 def test_white_furnace_shines_alike_at_any_size_and_place(box, scale, shift):
-    centre = np.full(3, shift + scale / 2)
-    camera = rw.Camera(centre, centre + scale * np.array([0.2, 0.1, -1]), fov=80, width=16, height=16)
+    center = np.full(3, shift + scale / 2)
+    camera = rw.Camera(center, center + scale * np.array([0.2, 0.1, -1]), fov=80, width=16, height=16)
     furnace = room(box, 0.6, 1.0, scale, shift)
     assert_mean(rw.render(rw.Scene(furnace), camera, samples=64, progress=False), 2.5)
 

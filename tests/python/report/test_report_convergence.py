@@ -51,7 +51,7 @@ def test_there_is_a_row_for_each_contender_and_budget(report):
         mine = report.where(contender=name)
         assert mine.column("budget") == tuple(0.2 / 2**k for k in reversed(range(LEVELS)))
         samples = mine.column("samples")
-        # More time gives more samples; between neighbours, other load on the machine decides.
+        # More time gives more samples; between neighbors, other load on the machine decides.
         assert samples[0] < samples[-1]
         for seconds, error, product in zip(
             mine.column("seconds"), mine.column("relmse"), mine.column("error_seconds"), strict=True

@@ -10,7 +10,7 @@ from PIL import Image as Pillow
 from PIL import ImageDraw, ImageFont
 
 import raywright as rw
-from raywright.report.heatmap import COLOURS, ticks
+from raywright.report.heatmap import COLORS, ticks
 from raywright.report.time_share import fitted
 
 KNOT = rw.scenes.torus_knot(along=60, around=10)
@@ -30,41 +30,41 @@ def test_counts_are_what_rays_cost(what):
     assert np.array_equal(heat.nodes, cost.nodes)
     assert np.array_equal(heat.primitives, cost.primitives)
     assert np.array_equal(heat.counts, getattr(cost, what))
-    assert heat.most == heat.counts.max()
+    assert heat.vmax == heat.counts.max()
     assert heat.share is None
 
 
-def test_brute_force_has_one_colour():
+def test_brute_force_has_one_color():
     heat = rw.report.heatmap(rw.Scene(KNOT, accelerator=rw.BruteForce()), CAMERA, "primitives", repeats=0)
     assert (heat.counts == len(KNOT.faces)).all()
-    assert (heat.srgb() == COLOURS[-1]).all()
-    assert (rw.report.heatmap(rw.Scene([]), CAMERA, repeats=0).srgb() == COLOURS[0]).all()
+    assert (heat.srgb() == COLORS[-1]).all()
+    assert (rw.report.heatmap(rw.Scene([]), CAMERA, repeats=0).srgb() == COLORS[0]).all()
 
 
-def test_colours_tell_counts(heat):
+def test_colors_tell_counts(heat):
     picture = heat.srgb()
     assert picture.shape == (30, 40, 3)
-    assert (picture[heat.counts == heat.most] == COLOURS[-1]).all()
+    assert (picture[heat.counts == heat.vmax] == COLORS[-1]).all()
     # The level is the nearest of 256 to the count's share of the maximum.
-    level = np.floor(255 * heat.counts / heat.most + 0.5).astype(int)
-    assert np.array_equal(picture, COLOURS[level])
+    level = np.floor(255 * heat.counts / heat.vmax + 0.5).astype(int)
+    assert np.array_equal(picture, COLORS[level])
 
 
-def test_colours_rise_evenly_in_lightness():
-    assert COLOURS[0].tolist() == [0, 0, 0]
-    assert COLOURS[-1].tolist() == [255, 255, 255]
+def test_colors_rise_evenly_in_lightness():
+    assert COLORS[0].tolist() == [0, 0, 0]
+    assert COLORS[-1].tolist() == [255, 255, 255]
     # The scheme keeps perceived brightness (NTSC) linear, except for clipping.
-    brightness = COLOURS @ np.array([0.30, 0.59, 0.11])
+    brightness = COLORS @ np.array([0.30, 0.59, 0.11])
     assert np.abs(brightness - np.arange(256)).max() < 3
     assert (np.diff(brightness) > -0.5).all()
 
 
-def test_what_is_above_the_scale_has_its_last_colour(heat):
-    low = rw.report.heatmap(SCENE, CAMERA, most=2, repeats=0)
-    assert low.most == 2
-    assert (low.srgb()[low.counts >= 2] == COLOURS[-1]).all()
-    high = rw.report.heatmap(SCENE, CAMERA, most=10 * heat.most, repeats=0)
-    assert not (high.srgb() == COLOURS[-1]).all(axis=2).any()
+def test_what_is_above_the_scale_has_its_last_color(heat):
+    low = rw.report.heatmap(SCENE, CAMERA, vmax=2, repeats=0)
+    assert low.vmax == 2
+    assert (low.srgb()[low.counts >= 2] == COLORS[-1]).all()
+    high = rw.report.heatmap(SCENE, CAMERA, vmax=10 * heat.vmax, repeats=0)
+    assert not (high.srgb() == COLORS[-1]).all(axis=2).any()
 
 
 def test_png_shows_the_picture_enlarged_beside_its_bar(heat, tmp_path):
@@ -74,8 +74,8 @@ def test_png_shows_the_picture_enlarged_beside_its_bar(heat, tmp_path):
     assert pixels.shape[0] == 240
     assert np.array_equal(pixels[4:240:8, 4:320:8], heat.srgb())
     bar = pixels[:, 335]
-    # From the bottom up, every colour with enough room, in order.
-    found = [np.flatnonzero((colour == COLOURS).all(axis=1))[0] for colour in bar[22:231][::-1]]
+    # From the bottom up, every color with enough room, in order.
+    found = [np.flatnonzero((color == COLORS).all(axis=1))[0] for color in bar[22:231][::-1]]
     assert found[0] == 0
     assert found[-1] == 255
     assert (np.diff(found) >= 0).all()
@@ -94,10 +94,10 @@ def test_the_font_has_what_is_written(most, monkeypatch):
         draw(self, at, told, **how)
 
     monkeypatch.setattr(ImageDraw.ImageDraw, "text", text)
-    heat = rw.report.heatmap(SCENE, CAMERA, most=most, repeats=0)
+    heat = rw.report.heatmap(SCENE, CAMERA, vmax=most, repeats=0)
     heat._repr_png_()
-    # Values above the last number share its colour, and a plus sign says so.
-    *numbers, last = map(str, ticks(heat.most))
+    # Values above the last number share its color, and a plus sign says so.
+    *numbers, last = map(str, ticks(heat.vmax))
     assert written == ["nodes", *numbers, last if most is None else f"{last}+"]
     font = ImageFont.load_default()
     missing = bytes(font.getmask("\ue000" if isinstance(font, ImageFont.FreeTypeFont) else "\x00"))
@@ -118,14 +118,14 @@ def test_summary_tells_the_numbers(heat):
         heat.nodes.max(),
     )
     assert str(heat) == str(heat.summary())
-    assert repr(heat) == f"Heatmap(40x30, nodes visited, 0 to {heat.most})"
+    assert repr(heat) == f"Heatmap(40x30, nodes visited, 0 to {heat.vmax})"
 
 
 def test_plot_shows_the_counts(heat):
     pytest.importorskip("matplotlib").use("Agg")
     ax = heat.plot()
     assert np.array_equal(ax.images[0].get_array(), heat.counts)
-    assert ax.images[0].get_clim() == (0, heat.most)
+    assert ax.images[0].get_clim() == (0, heat.vmax)
     ax.figure.clear()
 
 
@@ -213,7 +213,7 @@ def test_a_heatmap_tells_the_share_if_asked_to():
             lambda: rw.report.heatmap(SCENE, CAMERA, "boxes"),
             "what must be one of 'nodes', 'primi",
         ),
-        (ValueError, lambda: rw.report.heatmap(SCENE, CAMERA, most=0), "most must be at least 1, got 0"),
+        (ValueError, lambda: rw.report.heatmap(SCENE, CAMERA, vmax=0), "vmax must be at least 1, got 0"),
         (TypeError, lambda: rw.report.time_share(KNOT, CAMERA), "scene must be a Scene, got Mesh"),
         (TypeError, lambda: rw.report.time_share(SCENE, 3), "rays must be a Camera, Rays"),
         (

@@ -32,7 +32,7 @@ SINGLE = ROUTINES[:-1]
 
 @pytest.fixture(scope="module")
 def report():
-    return rw.report.kernels(pairs=3000, repeat=3)
+    return rw.report.kernels(pairs=3000, repeats=3)
 
 
 def row(report, routine, name):
@@ -247,7 +247,7 @@ def test_families_are_as_extreme_as_they_are_said_to_be():
 
 def test_the_same_seed_gives_the_same_errors():
     def errors(seed):
-        return [(*r[:2], *r[3:]) for r in rw.report.kernels(pairs=200, seed=seed, repeat=1).rows]
+        return [(*r[:2], *r[3:]) for r in rw.report.kernels(pairs=200, seed=seed, repeats=1).rows]
 
     assert errors(1) == errors(1)
     assert errors(1) != errors(2)
@@ -258,7 +258,7 @@ def test_times_are_those_of_a_few_hundred_operations(report):
 
 
 def test_a_single_pair_is_enough():
-    rows = rw.report.kernels(pairs=1, repeat=1).rows
+    rows = rw.report.kernels(pairs=1, repeats=1).rows
     assert {r.hits for r in rows} == {1}
     # Missed rays have no error.
     assert all((r.max_ulps is None) == (r.missed == 1) for r in rows)
@@ -292,8 +292,8 @@ def test_a_report_pickles_compares_and_is_frozen(report):
         ({"pairs": True}, TypeError, r"pairs must be an integer, got True"),
         ({"seed": -1}, ValueError, r"seed must be between 0 and \d+, got -1"),
         ({"seed": None}, TypeError, r"seed must be an integer, got None"),
-        ({"repeat": 0}, ValueError, r"repeat must be between 1 and 10000, got 0"),
-        ({"repeat": "3"}, TypeError, r"repeat must be an integer, got '3'"),
+        ({"repeats": 0}, ValueError, r"repeats must be between 1 and 10000, got 0"),
+        ({"repeats": "3"}, TypeError, r"repeats must be an integer, got '3'"),
     ],
 )
 def test_bad_arguments_are_named(given, error, message):
@@ -314,7 +314,7 @@ def test_the_core_refuses_arrays_that_do_not_belong_together():
 def test_reports_are_imported_when_they_are_asked_for_and_matplotlib_when_something_is_plotted():
     code = (
         "import sys, raywright as rw; print('raywright.report' in sys.modules);"
-        "rw.report.kernels(pairs=10, repeat=1); print('matplotlib' in sys.modules)"
+        "rw.report.kernels(pairs=10, repeats=1); print('matplotlib' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["False", "False"]

@@ -200,7 +200,7 @@ def test_camera_rays_have_the_type_asked_for():
             ValueError,
             r"offsets must have shape .*\(4, 6, 2\), got \(6, 4, 2\)",
         ),
-        ({"offsets": "centre"}, TypeError, r"offsets must be real numbers, got 'centre'"),
+        ({"offsets": "center"}, TypeError, r"offsets must be real numbers, got 'center'"),
         ({"dtype": np.int32}, ValueError, r"dtype must be float32 or float64, got int32"),
     ],
 )

@@ -60,7 +60,7 @@ def test_a_mesh_that_has_none_is_not_filled_up_beside_one_that_has_some(where):
     assert held(*meshes(normals=NORMALS)) - held(*meshes()) == COUNT * 12 + ENTRY
 
 
-def test_neighbours_with_values_share_an_entry():
+def test_neighbors_with_values_share_an_entry():
     some, none = mesh(CHECKED, uv=UV), mesh(CHECKED)
     assert held(some, some, none) - held(none, none, none) == 2 * COUNT * 8 + ENTRY
     assert held(some, none, some) - held(none, none, none) == 2 * (COUNT * 8 + ENTRY)

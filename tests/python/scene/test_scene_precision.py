@@ -9,7 +9,7 @@ import trimesh
 
 import raywright as rw
 
-# Metres east and north of UTM's zone 32, and above the sea.
+# Meters east and north of UTM's zone 32, and above the sea.
 PLACE = np.array([465_000.3, 5_249_000.2, 440.6])
 STEP = 2.0**-22  # half of what float32 counts in between 4 and 8
 
@@ -28,7 +28,7 @@ def row(scene):
 
 
 def bumpy(at=(0.0, 0.0, 0.0), count=41):
-    """A terrain whose coordinates are eighths of a metre, so that moving it far by eighths rounds nothing."""
+    """A terrain whose coordinates are eighths of a meter, so that moving it far by eighths rounds nothing."""
     x, y = 0.375 * np.stack(np.meshgrid(np.arange(count), np.arange(count)))
     heights = np.round(6 * np.sin(2.4 * x + 0.8 * y) * np.cos(1.9 * y)) / 8
     corner = np.arange(count * count).reshape(count, count)

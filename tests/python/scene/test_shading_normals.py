@@ -7,12 +7,12 @@ import pytest
 
 import raywright as rw
 
-GREY, BLACK = rw.Diffuse(0.8), rw.Diffuse(0.0)
+GRAY, BLACK = rw.Diffuse(0.8), rw.Diffuse(0.0)
 LEANING = np.array([0.6, 0.0, 0.8])
 LIGHT = 3.0
 
 
-def floor(normal, material=GREY):
+def floor(normal, material=GRAY):
     """A square of 2 by 2 in the plane z = 0 whose vertices have a normal, with u along x and v along y."""
     corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
     normals = None if normal is None else np.tile(normal, (4, 1))
@@ -63,7 +63,7 @@ def test_who_sees_a_shading_normal_from_behind_sees_that_side():
     # Lit from above the face, from either side of the shading normal.
     before, behind = unit(0.5, 0, 1), unit(-1, 0, 0.3)
     two = rw.TwoSided(rw.Diffuse(0.25), rw.Diffuse(0.75))
-    for material, share in ((GREY, 0.8), (two, 0.75), (rw.TwoSided(GREY, BLACK), 0.0)):
+    for material, share in ((GRAY, 0.8), (two, 0.75), (rw.TwoSided(GRAY, BLACK), 0.0)):
         shape = floor(LEANING, material)
         assert seen(shape, lit_from(before), towards=towards)[0] == 0
         expected = share / np.pi * LIGHT * -(behind @ LEANING)
@@ -80,9 +80,9 @@ def shadowing(normal, light, own=(0, 0, 1)):
     return 2 / (1 + np.sqrt(1 + min(square_of_tangent(normal) / 8, 1) * square_of_tangent(light)))
 
 
-def mapped(normal, material=GREY):
-    colours = np.array(0.5 * (np.asarray(normal) + 1), np.float32).reshape(1, 1, 3)
-    return rw.NormalMap(material, rw.ImageTexture(colours, linear=True))
+def mapped(normal, material=GRAY):
+    colors = np.array(0.5 * (np.asarray(normal) + 1), np.float32).reshape(1, 1, 3)
+    return rw.NormalMap(material, rw.ImageTexture(colors, linear=True))
 
 
 @pytest.mark.parametrize("lean", [LEANING, unit(0.3, -0.4, 1), unit(-2, 1, 0.2)])
@@ -96,8 +96,8 @@ def test_maps_let_facets_stand_in_the_light(lean, towards):
 def test_a_bump_leans_by_its_slope_alone():
     """The plane of height u / 2 over 2 u of x, whose normal leans by 1/4 of its height."""
     ramp = np.linspace(0, 1, 64, dtype=np.float32)[None, :, None]
-    # Between the centres of texels, u goes from 1/128 to 127/128.
-    bump = rw.BumpMap(GREY, rw.ImageTexture(ramp, linear=True, wrap="clamp"), 0.5 * 63 / 64)
+    # Between the centers of texels, u goes from 1/128 to 127/128.
+    bump = rw.BumpMap(GRAY, rw.ImageTexture(ramp, linear=True, wrap="clamp"), 0.5 * 63 / 64)
     lean = unit(-0.25, 0, 1)
     for towards in ((0, 0, 1), (-0.5, 0.4, 1)):
         light = unit(*towards)
@@ -139,7 +139,7 @@ def test_light_from_lights_scatters_as_seen_from_the_camera(way):
     lean = unit(0.5, 0.2, 1)
     square = floor(lean, mapped(unit(0.3, -0.6, 1)))
     wall = rw.Mesh(
-        [[1.5, -1, 0], [1.5, 1, 0], [1.5, 1, 2], [1.5, -1, 2]], [[0, 1, 2], [0, 2, 3]], material=GREY
+        [[1.5, -1, 0], [1.5, 1, 0], [1.5, 1, 2], [1.5, -1, 2]], [[0, 1, 2], [0, 2, 3]], material=GRAY
     )
     lamp = rw.Sphere((0.5, 0.3, 2.0), 0.4, material=BLACK, emission=4.0)
     scene = rw.Scene([square, wall, lamp], shading_normals="raw")

@@ -10,7 +10,7 @@ from PIL import Image
 def write_files(folder):
     """Write the files that the scenes name."""
     rng = np.random.default_rng(7)
-    Image.fromarray(rng.integers(20, 235, (6, 9, 3), np.uint8)).save(folder / "colours.png")
+    Image.fromarray(rng.integers(20, 235, (6, 9, 3), np.uint8)).save(folder / "colors.png")
     y, x = np.meshgrid(*2 * [(np.arange(32) + 0.5) / 32], indexing="ij")
     bumps = 0.5 + 0.5 * np.sin(4 * np.pi * x) * np.sin(2 * np.pi * y)
     Image.fromarray(np.uint8(np.round(255 * bumps))).save(folder / "bumps.png")
@@ -75,7 +75,7 @@ def eight():
 
 
 def dabs():
-    """An octahedron as a PLY, with colours of its vertices, and colours and shares of its faces."""
+    """An octahedron as a PLY, with colors of its vertices, and colors and shares of its faces."""
     header = ["ply", "format ascii 1.0", "element vertex 6", *(f"property float {name}" for name in "xyz")]
     header += [f"property float color_{k}" for k in range(3)]
     header += ["element face 8", "property list uchar int vertex_indices"]

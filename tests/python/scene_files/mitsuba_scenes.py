@@ -60,7 +60,7 @@ def scenes():
                 "to_world": moved(0, 0, 0.2),
                 "bsdf": {
                     "type": "twosided",
-                    "bsdf": {"type": "diffuse", "reflectance": picture("colours.png")},
+                    "bsdf": {"type": "diffuse", "reflectance": picture("colors.png")},
                 },
             },
             lamp={"type": "directional", "direction": [0.3, 0.6, -1.0], "irradiance": rgb(2.0, 2.2, 2.5)},
@@ -73,7 +73,7 @@ def scenes():
                 "bsdf": {
                     "type": "diffuse",
                     "reflectance": picture(
-                        "colours.png",
+                        "colors.png",
                         wrap_mode="mirror",
                         filter_type="nearest",
                         to_uv=matrix((-0.4, 0.6, 0), (1.75, 0.96, 0), (-1.44, 2.63, 0), (0, 0, 1)),
@@ -283,7 +283,7 @@ def scenes():
                     "type": "plastic",
                     "int_ior": 1.8,
                     "nonlinear": True,
-                    "diffuse_reflectance": picture("colours.png", filter_type="nearest"),
+                    "diffuse_reflectance": picture("colors.png", filter_type="nearest"),
                 }
             ),
         ),
@@ -361,7 +361,7 @@ def scenes():
                 c={
                     "type": "rectangle",
                     "to_world": looking((-0.9, -1.2, 0.7), (0, -5, 2)),
-                    "bsdf": {"type": "mask", "opacity": picture("colours.png", raw=True), "bsdf": matt},
+                    "bsdf": {"type": "mask", "opacity": picture("colors.png", raw=True), "bsdf": matt},
                 },
             ),
             "integrator": {"type": "volpath", "max_depth": -1},
@@ -370,9 +370,7 @@ def scenes():
         # reflection.
         "blendbsdf": scene(
             a=FLOOR,
-            b=ball(
-                {"type": "blendbsdf", "weight": picture("colours.png"), "one": matt, "two": sheet["bsdf"]}
-            ),
+            b=ball({"type": "blendbsdf", "weight": picture("colors.png"), "one": matt, "two": sheet["bsdf"]}),
             lamp=LAMP,
             sky=SKY,
         ),
@@ -483,7 +481,7 @@ def scenes():
         },
         "area, pictured": scene(
             a=FLOOR,
-            b=ball({"type": "diffuse"}, emitter={"type": "area", "radiance": picture("colours.png")}),
+            b=ball({"type": "diffuse"}, emitter={"type": "area", "radiance": picture("colors.png")}),
         ),
         **extended(),
         **filled(),

@@ -85,7 +85,7 @@ def extended():
                 "type": "spot",
                 "to_world": ABOVE,
                 "intensity": rgb(20.0, 18.0, 16.0),
-                "texture": picture("colours.png"),
+                "texture": picture("colors.png"),
                 "cutoff_angle": 35.0,
                 "beam_width": 20.0,
             },
@@ -96,7 +96,7 @@ def extended():
             thrown={
                 "type": "projector",
                 "to_world": ABOVE,
-                "irradiance": picture("colours.png"),
+                "irradiance": picture("colors.png"),
                 "scale": 6.0,
                 "fov": 50.0,
             },
@@ -124,11 +124,11 @@ def extended():
             sky=SKY,
             lamp=LAMP,
         ),
-        "ply, colours of vertices": scene(
+        "ply, colors of vertices": scene(
             b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": dabs},
             sky=SKY,
         ),
-        "ply, colours of faces": scene(
+        "ply, colors of faces": scene(
             b={"type": "ply", "filename": "dabs.ply", "to_world": high, "face_normals": True, "bsdf": tiles},
             sky=SKY,
         ),

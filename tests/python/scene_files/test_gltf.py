@@ -131,7 +131,7 @@ def test_numbers_may_be_shared_sparse_and_apart(read):
     assert zeros.vertices.tolist() == [[7, 7, 7], [0, 0, 0], [0, 0, 0], [8, 8, 8]]
 
 
-def test_coordinates_begin_below_and_normals_and_colours_are_kept(read):
+def test_coordinates_begin_below_and_normals_and_colors_are_kept(read):
     writer = Writer()
     uv = np.array([(0, 0), (65535, 0), (65535, 65535), (0, 13107)], np.uint16)
     colors = np.array([(255, 0, 0, 255), (0, 51, 0, 255), (0, 0, 255, 255), (255, 255, 255, 255)], np.uint8)

@@ -291,7 +291,7 @@ def test_tints_and_films_may_vary(tmp_path):
     assert (mix.a, mix.amount) == (rw.Dielectric(1.5, 0.0), rw.textures.ProductTexture(red, 0.5))
 
 
-def test_metal_under_a_film_reflects_its_colour_where_the_film_ends(tmp_path):
+def test_metal_under_a_film_reflects_its_color_where_the_film_ends(tmp_path):
     metal = {"baseColorFactor": [0.9, 0.6, 0.3, 1], "metallicFactor": 1, "roughnessFactor": 0}
     made = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": FILM}).material
     assert (made.thickness, made.ior) == (400.0, 1.4)
@@ -324,11 +324,11 @@ def test_metal_of_a_picture_has_its_film(tmp_path):
         400.0, 1.4, base=rw.Conductor(eta=partly.b.base.eta, roughness=green, k=0.0)
     )
     assert partly.amount == blue
-    # A film of thickness 0 is none: straight on, the metal has its colour.
+    # A film of thickness 0 is none: straight on, the metal has its color.
     writer = Writer()
     bare = {"KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceThicknessMaximum": 0}}
-    grey = np.full((2, 2, 3), 150, np.uint8)
-    metal = {"baseColorTexture": writer.picture(png(grey)), "roughnessFactor": 0}
+    gray = np.full((2, 2, 3), 150, np.uint8)
+    metal = {"baseColorTexture": writer.picture(png(gray)), "roughnessFactor": 0}
     mesh = loaded(tmp_path, {"pbrMetallicRoughness": metal, "extensions": bare}, writer)
     eye = rw.Orthographic((0.5, 0.5, 3), (0.5, 0.5, 0), up=(0, 1, 0), scale=0.5, width=2, height=2)
     scene = rw.Scene(mesh, environment=1.0)
@@ -341,7 +341,7 @@ def test_metal_of_a_picture_has_its_film(tmp_path):
     [
         (
             clear(baseColorFactor=[1, 0, 0, 1], extensions={**VOLUME, **FILM}),
-            "light through clear materials with films is not tinted by their base colour",
+            "light through clear materials with films is not tinted by their base color",
         ),
         (
             {"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": FILM},
@@ -367,7 +367,7 @@ def test_what_is_not_shown_is_told_once(tmp_path, material, told):
 
 @pytest.mark.parametrize("pictured", [False, True])
 def test_specular_and_glossy_materials_become_metallic_and_rough(tmp_path, pictured):
-    """What reflects 4 % is no metal, and what is black but for its specular colour is one."""
+    """What reflects 4 % is no metal, and what is black but for its specular color is one."""
 
     def model(diffuse, specular):
         writer = Writer()
@@ -379,7 +379,7 @@ def test_specular_and_glossy_materials_become_metallic_and_rough(tmp_path, pictu
         made = loaded(tmp_path, material, writer).material
         ends = [made.base_color, made.metallic, made.roughness]
         if pictured:
-            # 8-bit pictures: sRGB for colour, linear shares in the other.
+            # 8-bit pictures: sRGB for color, linear shares in the other.
             low, high = zip(*(one.range for one in ends), strict=True)
             assert low == high
             ends = [low[0], low[1][0], low[2][0]]
@@ -399,7 +399,7 @@ def test_extensions_that_may_be_left_out_are_named(tmp_path):
     loaded(tmp_path, {}, writer, told)
 
 
-def test_colours_of_vertices_tint_the_base_colour(tmp_path):
+def test_colors_of_vertices_tint_the_base_color(tmp_path):
     half = np.tile(np.float32([0.5, 1, 0.25]), (len(SQUARE), 1))
     mesh = loaded(tmp_path, {"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 1, 1]}}, COLOR_0=half)
     assert mesh.material == rw.MetallicRough(rw.textures.ProductTexture(rw.VertexColors(), (1, 0.5, 1)), 1, 1)

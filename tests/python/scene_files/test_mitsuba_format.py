@@ -92,7 +92,7 @@ def test_names_stand_for_metals_and_indices():
         material({"type": "dielectric", "int_ior": "treacle"})
 
 
-def test_colours_are_told_in_any_way():
+def test_colors_are_told_in_any_way():
     def seen(value):
         return front({"type": "diffuse", "reflectance": value}).reflectance
 
@@ -281,7 +281,7 @@ def test_a_part_of_a_film_sees_what_the_whole_does_there():
     [
         ({"m": {"type": "piecewise"}}, "scene: piecewise 'm' is not supported here"),
         ({"s": {"type": "sphere", "b": {"type": "hair"}}}, "sphere 's': hair 'b' is not supported here"),
-        ({"s": {"type": "sphere", "colour": 1}}, "sphere 's': parameter 'colour' is not supported"),
+        ({"s": {"type": "sphere", "color": 1}}, "sphere 's': parameter 'color' is not supported"),
         ({"s": {"type": "sphere", "radius": -1.0}}, "sphere 's': radius must be greater than 0"),
         (
             {"s": {"type": "sphere", "to_world": [[1]]}},
@@ -378,8 +378,8 @@ def test_moments_are_told_of_any_integrator():
 )
 def test_meters_measure_along_one_ray(eye):
     """Of a matt ball under an even sky, its reflectance: all of the sky is seen from its pole."""
-    grey = {"type": "diffuse", "reflectance": 0.6}
-    parts = {"b": {"type": "sphere", "bsdf": grey}, "s": {"type": "constant"}}
+    gray = {"type": "diffuse", "reflectance": 0.6}
+    parts = {"b": {"type": "sphere", "bsdf": gray}, "s": {"type": "constant"}}
     found = rw.from_mitsuba({"type": "scene", "eye": {**eye, "film": POINT}, **parts})
     assert found.camera.rays()[1][0, 0].tolist() == [0.0, 0.0, -1.0]
     image = found.render(samples=64, progress=False)

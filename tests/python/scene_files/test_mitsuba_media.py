@@ -67,7 +67,7 @@ def test_densities_from_files(tmp_path):
     assert found.bounds == ((0, 0, 0), (2, 3, 4))
 
 
-def test_grids_of_albedos_and_of_colours(tmp_path):
+def test_grids_of_albedos_and_of_colors(tmp_path):
     header = struct.pack("<3sBiiiii6f", b"VOL", 3, 1, 2, 3, 4, 3, 0, 0, 0, 2, 3, 4)
     numbers = (np.arange(72, dtype=np.float32) / 72).reshape(2, 3, 4, 3)
     (tmp_path / "c.vol").write_bytes(header + numbers.transpose(2, 1, 0, 3).tobytes())

@@ -56,19 +56,19 @@ def test_compressed_meshes_that_are_broken_are_refused(tmp_path):
         refused(data[:length], 0)
 
 
-def test_vertices_and_faces_have_their_colours(tmp_path):
+def test_vertices_and_faces_have_their_colors(tmp_path):
     (tmp_path / "dabs.ply").write_text(dabs())
     rows = [line.split() for line in dabs().splitlines()]
     given = np.array([row[3:6] for row in rows if len(row) == 6 and row[0] != "property"], float)
 
     def read(name, **more):
-        colour = {"type": "mesh_attribute", "name": name, **more}
-        return shape(tmp_path, type="ply", filename="dabs.ply", b={"type": "diffuse", "reflectance": colour})
+        color = {"type": "mesh_attribute", "name": name, **more}
+        return shape(tmp_path, type="ply", filename="dabs.ply", b={"type": "diffuse", "reflectance": color})
 
     assert np.allclose(read("vertex_color").colors, given, rtol=0, atol=1e-6)
     by_face = read("face_color", scale=0.5)
     assert by_face.material.front.reflectance == rw.textures.ProductTexture(rw.VertexColors(), 0.5)
-    # Each face has its own corners, all of one colour.
+    # Each face has its own corners, all of one color.
     assert by_face.vertices.shape == (24, 3)
     assert (by_face.colors.reshape(8, 3, 3) == by_face.colors.reshape(8, 3, 3)[:, :1]).all()
     tiles = np.array([row[4:7] for row in rows[-8:]], float)
@@ -250,12 +250,12 @@ def test_grids_of_distances_have_their_surface(tmp_path):
     assert plain.normals is None
 
 
-def test_a_grid_of_distances_has_the_first_colour_of_its_texture_all_over():
+def test_a_grid_of_distances_has_the_first_color_of_its_texture_all_over():
     """As Mitsuba has u and v of them: 0."""
     z, y, x = np.meshgrid(*3 * [np.linspace(0, 1, 8)], indexing="ij")
     grid = np.sqrt((x - 0.5) ** 2 + (y - 0.5) ** 2 + (z - 0.5) ** 2) - 0.3
-    colours = {"color0": {"type": "rgb", "value": 0.8}, "color1": {"type": "rgb", "value": 0.1}}
-    squares = {"type": "checkerboard", "to_uv": [[5, 0, 0], [0, 5, 0], [0, 0, 1]], **colours}
+    colors = {"color0": {"type": "rgb", "value": 0.8}, "color1": {"type": "rgb", "value": 0.1}}
+    squares = {"type": "checkerboard", "to_uv": [[5, 0, 0], [0, 5, 0], [0, 0, 1]], **colors}
     eye = {
         "type": "orthographic",
         "to_world": [[-0.1, 0, 0, 0.5], [0, 0.1, 0, 0.5], [0, 0, -0.1, 3], [0, 0, 0, 1]],

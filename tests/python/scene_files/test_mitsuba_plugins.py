@@ -27,8 +27,8 @@ def test_the_table_is_current():
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_is_refused_is_refused_by_name(name):
-    of_a_colour = name in plugins.REFUSED["textures and colors"]
-    inner = {"type": "diffuse", "reflectance": {"type": name}} if of_a_colour else {"type": name}
+    of_a_color = name in plugins.REFUSED["textures and colors"]
+    inner = {"type": "diffuse", "reflectance": {"type": name}} if of_a_color else {"type": name}
     scene = {"type": "scene", "eye": EYE, "ball": {"type": "sphere", "inner": inner}}
     if name in (*plugins.REFUSED["sensors"], *plugins.REFUSED["integrators"]):
         scene = {"type": "scene", "eye": EYE, "ball": {"type": "sphere"}, "other": inner}

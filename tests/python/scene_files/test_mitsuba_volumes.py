@@ -1,4 +1,4 @@
-"""Mitsuba's textures that are volumes: of meshes, the colours of a grid."""
+"""Mitsuba's textures that are volumes: of meshes, the colors of a grid."""
 
 import struct
 
@@ -21,8 +21,8 @@ def grid(path, **more):
     return {"type": "volume", "volume": {"type": "gridvolume", "filename": str(path), **more}}
 
 
-def read(colour, **shape):
-    bsdf = {"type": "diffuse", "reflectance": colour}
+def read(color, **shape):
+    bsdf = {"type": "diffuse", "reflectance": color}
     scene = {"type": "scene", "sensor": {"type": "perspective"}, "shape": {"bsdf": bsdf, **shape}}
     return rw.from_mitsuba(scene).scene.shapes[0]
 
@@ -46,7 +46,7 @@ def test_a_ramp_is_one_on_a_rectangle(tmp_path):
     assert np.allclose(found.uv, found.vertices[:, :2], rtol=0, atol=1e-6)
 
 
-def test_colours_lie_where_a_transform_puts_them_and_repeat(tmp_path):
+def test_colors_lie_where_a_transform_puts_them_and_repeat(tmp_path):
     numbers = np.random.default_rng(5).uniform(0, 1, (3, 4, 5, 3)).astype(np.float32)
     path = written(tmp_path / "dots.vol", numbers)
     scale = [[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 2, 0], [0, 0, 0, 1]]
@@ -57,7 +57,7 @@ def test_colours_lie_where_a_transform_puts_them_and_repeat(tmp_path):
         for i in range(-1, 4):
             for j in range(-1, 5):
                 for k in range(-1, 6):
-                    # Each cell has a tent-shaped weight around its middle, with neighbours beyond the ends
+                    # Each cell has a tent-shaped weight around its middle, with neighbors beyond the ends
                     # too.
                     weight = np.clip(1 - np.abs(at - (i, j, k)), 0, None).prod(axis=1)
                     where = np.array((i, j, k))
@@ -66,14 +66,14 @@ def test_colours_lie_where_a_transform_puts_them_and_repeat(tmp_path):
         assert np.allclose(found.colors, expected, rtol=0, atol=1e-6)
 
 
-def test_a_volume_that_is_the_same_everywhere_is_a_colour():
+def test_a_volume_that_is_the_same_everywhere_is_a_color():
     even = {"type": "constvolume", "value": {"type": "rgb", "value": [0.2, 0.4, 0.6]}}
     found = read({"type": "volume", "volume": even}, type="sphere")
     assert found.material.front.reflectance == (0.2, 0.4, 0.6)
 
 
 @pytest.mark.parametrize(
-    ("shape", "colour", "message"),
+    ("shape", "color", "message"),
     [
         ("sphere", {}, "a volume of a grid is read as a texture of meshes only"),
         (
@@ -84,7 +84,7 @@ def test_a_volume_that_is_the_same_everywhere_is_a_colour():
         ("rectangle", {"volume": None}, "a volume must be within"),
     ],
 )
-def test_what_is_not_read_is_refused(tmp_path, shape, colour, message):
-    given = grid(written(tmp_path / "ramp.vol", RAMP)) | colour
+def test_what_is_not_read_is_refused(tmp_path, shape, color, message):
+    given = grid(written(tmp_path / "ramp.vol", RAMP)) | color
     with pytest.raises(ValueError, match=message):
         read({key: value for key, value in given.items() if value is not None}, type=shape)

@@ -278,7 +278,7 @@ def test_files_include_others(tmp_path):
         ('Shape "teapot"', "Shape teapot: a shape 'teapot' is not supported"),
         ('Shape "sphere" "float phimax" 90', "a part of it is not supported: phimax must be 360, got 90"),
         ('Material "hair"', "Material hair: a material 'hair' is not supported"),
-        ('Material "diffuse" "texture reflectance" "x"', "reflectance: there is no texture of colours 'x'"),
+        ('Material "diffuse" "texture reflectance" "x"', "reflectance: there is no texture of colors 'x'"),
         ('Texture "x" "spectrum" "ptex"', "a texture 'ptex' is not supported"),
         ('LightSource "goniometric"', "a light 'goniometric' is not supported"),
         (
@@ -338,7 +338,7 @@ def test_what_is_wrong_is_told_with_its_line(tmp_path, world, told):
         ("", "has no Camera"),
         (HEAD.replace("perspective", "realistic"), "Camera realistic: a camera 'realistic' is not supported"),
         (HEAD.replace("volpath", "magic"), "an integrator 'magic' is not supported"),
-        (HEAD + 'ColorSpace "rec2020"', "a colour space must be srgb"),
+        (HEAD + 'ColorSpace "rec2020"', "a color space must be srgb"),
         (HEAD.replace("[ 40 ]", "0"), "line 4: Film rgb: a resolution must be between 1 and 65536, got 0"),
         (HEAD.replace("50", "200"), "line 3: Camera perspective: fov must be between 0 and 180 degrees"),
         (HEAD.replace("fov", "lensradius").replace("50", "-1"), "lensradius must be at least 0, got -1"),

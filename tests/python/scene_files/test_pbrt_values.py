@@ -109,9 +109,9 @@ def test_light_of_the_white_balance_is_white(tmp_path):
     with pytest.warns(RuntimeWarning, match="whitebalance is applied to the light"):
         shot = load(tmp_path, world, film('"float whitebalance" 5000'))
     assert shot.scene.environment.radiance == pytest.approx((1, 1, 1), abs=2e-3)
-    # A grey ball, lit from all sides, has the same grey.
-    grey = world.replace("0.1", "1.5")
-    image = quietly(tmp_path, grey, film('"float whitebalance" 5000')).render(samples=64, progress=False)
+    # A gray ball, lit from all sides, has the same gray.
+    gray = world.replace("0.1", "1.5")
+    image = quietly(tmp_path, gray, film('"float whitebalance" 5000')).render(samples=64, progress=False)
     assert image.rgb[15, 20] == pytest.approx((0.5, 0.5, 0.5), abs=4e-3)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -193,7 +193,7 @@ def picture(folder, values, text="", of="spectrum", name="p.png"):
     return scale * texels
 
 
-GREY = np.full((2, 2), 64, np.uint8)
+GRAY = np.full((2, 2), 64, np.uint8)
 DECODED = ((64 / 255 + 0.055) / 1.055) ** 2.4
 
 
@@ -215,7 +215,7 @@ DECODED = ((64 / 255 + 0.055) / 1.055) ** 2.4
 )
 def test_points_of_a_picture_are_what_their_encoding_says(tmp_path, text, wanted):
     deep = (64 * 257 * np.ones((2, 2))).astype(np.uint16)
-    for values in (GREY, np.stack([GREY] * 3, -1), deep):
+    for values in (GRAY, np.stack([GRAY] * 3, -1), deep):
         for of in ("spectrum", "float"):
             assert picture(tmp_path, values, text, of) == pytest.approx(wanted, abs=1e-6)
     # Float pictures are linear.
@@ -229,22 +229,22 @@ def test_other_pictures_are_srgb_whatever_their_encoding_says(tmp_path):
     with pytest.warns(
         RuntimeWarning, match=r"the encoding of p\.bmp is taken as sRGB: pbrt decodes PNG alone"
     ):
-        assert picture(tmp_path, GREY, '"string encoding" "linear"', name="p.bmp") == pytest.approx(DECODED)
+        assert picture(tmp_path, GRAY, '"string encoding" "linear"', name="p.bmp") == pytest.approx(DECODED)
     with pytest.raises(
         ValueError, match="encoding must be sRGB, linear or gamma and a number, got 'gamma x'"
     ):
-        picture(tmp_path, GREY, '"string encoding" "gamma x"')
+        picture(tmp_path, GRAY, '"string encoding" "gamma x"')
     with pytest.raises(ValueError, match="filter must be one of point, bilinear, trilinear, ewa, got 'none'"):
-        picture(tmp_path, GREY, '"string filter" "none"')
+        picture(tmp_path, GRAY, '"string filter" "none"')
 
 
 def test_numbers_of_a_picture_are_its_alpha_or_its_mean(tmp_path):
-    colours = np.array([[(255, 0, 0), (0, 255, 51)]], np.uint8)
+    colors = np.array([[(255, 0, 0), (0, 255, 51)]], np.uint8)
     linear = '"string encoding" "linear"'
-    assert picture(tmp_path, colours, linear, "float")[0, :, 0] == pytest.approx((1 / 3, 1.2 / 3), abs=1e-6)
-    opaque = np.dstack([colours, np.full((1, 2), 255, np.uint8)])
+    assert picture(tmp_path, colors, linear, "float")[0, :, 0] == pytest.approx((1 / 3, 1.2 / 3), abs=1e-6)
+    opaque = np.dstack([colors, np.full((1, 2), 255, np.uint8)])
     assert picture(tmp_path, opaque, linear, "float")[0, :, 0] == pytest.approx((1 / 3, 1.2 / 3), abs=1e-6)
-    clear = np.dstack([colours, np.array([[255, 102]], np.uint8)])
+    clear = np.dstack([colors, np.array([[255, 102]], np.uint8)])
     assert picture(tmp_path, clear, linear, "float")[0, :, 0] == pytest.approx((1, 0.4), abs=1e-6)
     assert picture(tmp_path, clear, linear)[0, 0] == pytest.approx((1, 0, 0), abs=1e-6)
 

@@ -130,10 +130,10 @@ def test_the_mean_of_what_is_given_off(tmp_path):
     twice = rw.Instance(mesh, [np.diag([2.0, 2, 2, 1]), np.diag([1.0, -1, 1, 1])])
     assert own_radiance([twice, dark]) == pytest.approx(3 * 2.5 / 3.5)
     pixels = picture(tmp_path, "half.png", [[255, 0], [188, 188]])
-    grey = ((188 / 255 + 0.055) / 1.055) ** 2.4
+    gray = ((188 / 255 + 0.055) / 1.055) ** 2.4
     both = rw.Emission(rw.textures.ProductTexture(rw.ImageTexture(pixels), 4.0), both_sides=True)
     lit = rw.Mesh(mesh.vertices, mesh.faces, uv=np.zeros((3, 2)), emission=both)
-    assert own_radiance([lit]) == pytest.approx(4 * (1 + 2 * grey) / 4)
+    assert own_radiance([lit]) == pytest.approx(4 * (1 + 2 * gray) / 4)
     assert own_radiance([rw.Sphere((0, 0, 0), 1.0)]) == own_radiance([]) == 0
 
 

@@ -80,9 +80,9 @@ def test_pictures_are_on_surfaces(tmp_path):
     inputs = """color3f inputs:diffuseColor.connect = </Paint/P.outputs:rgb>
         float inputs:roughness.connect = </Paint/P.outputs:g>"""
     (square,) = shapes(tmp_path, SQUARE + paint(inputs, reader))
-    colour, rough = square.material.base_color, square.material.roughness
-    assert np.array_equal(colour.image, pixels)
-    assert (colour.wrap, colour.linear) == (("clamp", "repeat"), False)
+    color, rough = square.material.base_color, square.material.roughness
+    assert np.array_equal(color.image, pixels)
+    assert (color.wrap, color.linear) == (("clamp", "repeat"), False)
     # Scalar textures are not sRGB.
     assert (rough.channel, rough.linear) == ("g", True)
 

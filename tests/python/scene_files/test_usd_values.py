@@ -126,7 +126,7 @@ def test_shapes_have_the_colors_that_are_theirs(tmp_path, kind):
     own = f'def {kind} "S" {{\n    color3f[] primvars:displayColor = [(0.5, 0.25, 1)]\n}}\n'
     (shape,) = shapes(tmp_path, own)
     assert shape.material == rw.Diffuse((0.5, 0.25, 1))
-    # A colour of a group applies to all its members.
+    # A color of a group applies to all its members.
     group = f"""def Xform "Group" {{
     color3f[] primvars:displayColor = [(0.5, 0.25, 1)] (interpolation = "constant")
     float[] primvars:displayOpacity = [0.75] (interpolation = "constant")
@@ -261,7 +261,7 @@ def test_spheres_that_are_points(tmp_path):
     for size in ("0.5", "0"):
         text = shine.format(size) + "    bool treatAsPoint = 1\n    bool inputs:normalize = 1"
         assert lamp(tmp_path, text).intensity == pytest.approx((2, 2, 2))
-    with pytest.warns(RuntimeWarning, match="SphereLights without a radius are taken as normalised"):
+    with pytest.warns(RuntimeWarning, match="SphereLights without a radius are taken as normalized"):
         assert lamp(tmp_path, shine.format(0)).intensity == pytest.approx((2, 2, 2))
     cone = "float inputs:shaping:cone:angle = 30\nfloat inputs:shaping:cone:softness = 0.25\n"
     cone += "bool treatAsPoint = 1"

@@ -18,14 +18,14 @@ def test_knot_is_a_closed_tube_around_its_curve(p, q):
     assert len(knot.faces) == 2 * 900 * 60
     assert is_watertight(knot)
     assert degenerate_faces(knot) == 0
-    centre = knot.vertices.reshape(900, 60, 3).mean(axis=1)
-    assert np.allclose(np.linalg.norm(knot.vertices.reshape(900, 60, 3) - centre[:, np.newaxis], axis=2), 0.1)
+    center = knot.vertices.reshape(900, 60, 3).mean(axis=1)
+    assert np.allclose(np.linalg.norm(knot.vertices.reshape(900, 60, 3) - center[:, np.newaxis], axis=2), 0.1)
     # Pappus: the volume of a tube is its section times the length of its middle line.
-    length = np.linalg.norm(np.roll(centre, -1, axis=0) - centre, axis=1).sum()
+    length = np.linalg.norm(np.roll(center, -1, axis=0) - center, axis=1).sum()
     assert enclosed(knot) == pytest.approx(np.pi * 0.1**2 * length, rel=0.005)
     assert np.allclose(np.linalg.norm(knot.normals, axis=1), 1)
     assert np.allclose(
-        knot.normals, (knot.vertices.reshape(900, 60, 3) - centre[:, np.newaxis]).reshape(-1, 3) / 0.1
+        knot.normals, (knot.vertices.reshape(900, 60, 3) - center[:, np.newaxis]).reshape(-1, 3) / 0.1
     )
 
 
@@ -46,16 +46,16 @@ def test_cornell_box_has_its_measures():
     assert camera.fov == pytest.approx(39.3077, abs=1e-4)
 
 
-def test_cornell_colours_are_those_of_the_spectra():
+def test_cornell_colors_are_those_of_the_spectra():
     """Whatever made them of the spectra, a weighted mean lies between the least and the greatest value."""
     shapes = rw.scenes.cornell_box()[0].shapes
     white, red, green = (shapes[i].material.reflectance for i in (1, 5, 4))
     assert np.ptp(white) < 0.01
     assert red[0] > 5 * max(red[1:])
     assert green[1] > 4 * max(green[0], green[2])
-    for colour, least, greatest in ((white, 0.70, 0.78), (red, 0.039, 0.657), (green, 0.081, 0.482)):
-        assert least < min(colour)
-        assert max(colour) < greatest
+    for color, least, greatest in ((white, 0.70, 0.78), (red, 0.039, 0.657), (green, 0.081, 0.482)):
+        assert least < min(color)
+        assert max(color) < greatest
     light = shapes[0]
     assert light.material.reflectance == (0.78,) * 3
     # The lamp emits more at longer wavelengths.

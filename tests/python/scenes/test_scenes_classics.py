@@ -140,7 +140,7 @@ def test_a_city_has_closed_houses_on_a_ground_with_streets_between():
     assert (rw.Scene([ground, houses]).intersect(above, (0, -1, 0)).shape_id == 0).all()
 
 
-def test_a_city_is_higher_in_the_centre():
+def test_a_city_is_higher_in_the_center():
     houses = SCENES.city(9, seed=2)[1]
     boxes = houses.vertices.reshape(-1, 5, 8, 3)
     top, away = boxes[..., 1].max(axis=(1, 2)), np.linalg.norm(boxes[:, 0, :, [0, 2]].mean(axis=-1), axis=0)

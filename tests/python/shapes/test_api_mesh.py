@@ -64,7 +64,7 @@ def test_emission_is_none_or_three_floats(emission, kept):
     assert rw.Mesh(THREE, FACE, emission=emission).emission == kept
 
 
-def test_default_material_is_half_grey(triangle):
+def test_default_material_is_half_gray(triangle):
     assert triangle.material == rw.Diffuse(0.5)
 
 

@@ -108,8 +108,8 @@ def test_areas_and_bounds_have_their_closed_forms():
             assert shape.area == pytest.approx(area, rel=1e-13)
     moved = shapes.Sphere((1, 2, 3), 2, transform=TURN)
     assert moved.area == pytest.approx(64 * pi, rel=1e-13)
-    centre = TURN[:3, :3] @ (1, 2, 3) + TURN[:3, 3]
-    np.testing.assert_allclose(moved.bounds, [centre - 4, centre + 4], rtol=0, atol=2e-14)
+    center = TURN[:3, :3] @ (1, 2, 3) + TURN[:3, 3]
+    np.testing.assert_allclose(moved.bounds, [center - 4, center + 4], rtol=0, atol=2e-14)
     assert shapes.Plane().bounds.tolist() == [[-math.inf, -math.inf, 0], [math.inf, math.inf, 0]]
     assert shapes.Box((1, 2, 3), (4, 5, 6)).bounds.tolist() == [[1, 2, 3], [4, 5, 6]]
     # A prolate spheroid, and a sphere that is stretched into one.

@@ -73,9 +73,9 @@ def test_ranges_are_those_of_what_can_come_out():
         (3.0,) * 3,
     )
     assert rw.ImageTexture(np.array([[0, 255]], np.uint8)).range == ((0.0,) * 3, (1.0,) * 3)
-    grey = rw.ImageTexture(np.array([[188, 51]], np.uint8))
-    assert grey.range[1] == pytest.approx((0.502886,) * 3, abs=1e-6)
-    assert rw.ImageTexture(grey.image, linear=True).range[0] == (0.2,) * 3
+    gray = rw.ImageTexture(np.array([[188, 51]], np.uint8))
+    assert gray.range[1] == pytest.approx((0.502886,) * 3, abs=1e-6)
+    assert rw.ImageTexture(gray.image, linear=True).range[0] == (0.2,) * 3
     assert rw.ImageTexture(PIXELS, channel="a").range == ((3 / 255,) * 3, (23 / 255,) * 3)
     assert rw.textures.MixTexture(0.5, rw.textures.Noise(0.2, 0.7)).range == ((0.2,) * 3, (0.7,) * 3)
 
@@ -217,12 +217,12 @@ def test_procedurals_lie_in_coordinates_or_in_space():
     on = rw.Checker(0.25, 0.75, 8)
     inside = rw.Checker(0.25, 0.75, rw.textures.ObjectTransform(4, (4, 4, 0.5)))
     for texture in (on, inside):
-        # The middle one of five by five pixels: beside edges, a pixel's footprint has both colours.
+        # The middle one of five by five pixels: beside edges, a pixel's footprint has both colors.
         shown = seen(rw.Diffuse(texture), size=40).rgb[2::5, 2::5]
         assert shown == pytest.approx(np.repeat(expected, 3, axis=2), abs=2e-6)
 
 
-def test_colours_of_vertices_are_seen():
+def test_colors_of_vertices_are_seen():
     colors = [(0.0, 0, 0.5), (1, 0, 0.5), (1, 1, 0.5), (0, 1, 0.5)]
     image = seen(rw.Diffuse(rw.VertexColors()), samples=64, sampler=rw.rendering.Independent(), colors=colors)
     rows, columns = np.indices((8, 8))
@@ -233,7 +233,7 @@ def test_colours_of_vertices_are_seen():
     assert seen(rw.Diffuse(rw.VertexColors())).rgb == pytest.approx(np.ones((8, 8, 3)), abs=2e-6)
 
 
-def test_meshes_keep_colours():
+def test_meshes_keep_colors():
     colors = np.linspace(0, 1, 12, dtype=np.float32).reshape(4, 3)
     mesh = rw.Mesh(SQUARE, FACES, colors=colors)
     assert np.array_equal(mesh.colors, colors)

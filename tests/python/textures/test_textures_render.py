@@ -40,7 +40,7 @@ def corner(x, y):
     return (x / a * math.atan(y / a) + y / b * math.atan(x / b)) / (2 * math.pi)
 
 
-@pytest.mark.parametrize("both", [False, True], ids=["white", "coloured"])
+@pytest.mark.parametrize("both", [False, True], ids=["white", "colored"])
 @pytest.mark.parametrize("place", [(0.0, 0.0), (1.7, -0.6), (-3.0, 2.0)])
 def test_a_textured_lamp_lights_by_the_form_factors_of_its_texels(place, both):
     # A lamp of 4 by 2 at height 1, which faces down: u runs along x, v along -y.

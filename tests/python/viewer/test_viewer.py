@@ -142,7 +142,7 @@ def test_the_exposure_changes_without_a_new_render():
 
 
 class Held(rw.integrators.Integrator):
-    """Grey, and held up amid the second sample of the first view's pixels until the camera was moved."""
+    """Gray, and held up amid the second sample of the first view's pixels until the camera was moved."""
 
     def __init__(self, pixels):
         self.pixels, self.first, self.asked = pixels, None, 0

@@ -38,7 +38,7 @@ def test_arrays_are_those_of_the_scene_and_have_a_version():
             assert len(body) == told["arrays"][name]
             assert "immutable" in headers["Cache-Control"]
         assert (told["nodes"], told["depth"], told["scale"]) == (flat.own, flat.depth, flat.scale)
-        assert told["centre"] == flat.center.tolist()
+        assert told["center"] == flat.center.tolist()
         for missing in (
             path + "none",
             path,
@@ -197,7 +197,7 @@ def test_what_changes_while_the_scene_is_told_is_news(monkeypatch):
                 assert next(told for name, told in heard if name in ("view", "frame"))
 
 
-def test_colours_and_normals_of_a_sketch():
+def test_colors_and_normals_of_a_sketch():
     mesh = rw.scenes.torus_knot(along=40, around=8, material=rw.Diffuse((0.8, 0.4, 0.2)))
     two = rw.TwoSided(rw.Diffuse(0.25), rw.Mirror())
     lamp_ = rw.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], material=two, emission=1.0)

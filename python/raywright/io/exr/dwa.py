@@ -1,7 +1,7 @@
-"""DWAA and DWAB: colours as quantised cosines of 8 x 8 samples, other channels without loss.
+"""DWAA and DWAB: colors as quantized cosines of 8 x 8 samples, other channels without loss.
 
 After internal_dwa_decoder.h of OpenEXR, whose cosines differ between processors by the rounding of a float.
-So do ours: 1 of 3000 samples is another half, as its stored value is rounded to the other neighbour.
+So do ours: 1 of 3000 samples is another half, as its stored value is rounded to the other neighbor.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class _Rule(NamedTuple):
     suffix: str
     kind: int
     scheme: int
-    colour: int
+    color: int
     ignores_case: bool
 
     def fits(self, channel: Channel) -> bool:
@@ -209,23 +209,23 @@ def _to_linear() -> Words:
 def _classify(
     channels: tuple[Channel, ...], rules: tuple[_Rule, ...]
 ) -> tuple[list[int], list[tuple[Channel, ...]]]:
-    """Return the scheme of each channel, and groups of those that are cosines: triples of colours first."""
+    """Return the scheme of each channel, and groups of those that are cosines: triples of colors first."""
     schemes = []
-    colours: dict[str, dict[int, int]] = {}
+    colors: dict[str, dict[int, int]] = {}
     for number, channel in enumerate(channels):
-        slots = colours.setdefault(channel.name[: channel.name.rfind(".") + 1], {})
+        slots = colors.setdefault(channel.name[: channel.name.rfind(".") + 1], {})
         scheme = _STORED
         for rule in rules:
             if rule.fits(channel):
                 scheme = rule.scheme
-                if rule.colour:
-                    slots[rule.colour] = number
+                if rule.color:
+                    slots[rule.color] = number
         if scheme == _COSINES and channel.kind == 0:
             raise ValueError("its cosine coefficients are integers")
         schemes.append(scheme)
     threes = [
         [slots[k] for k in (1, 2, 3)]
-        for slots in colours.values()
+        for slots in colors.values()
         if len(slots) == 3 and all(schemes[n] == _COSINES for n in slots.values())
     ]
     taken = {n for three in threes for n in three}
@@ -255,8 +255,8 @@ def _old_rules() -> tuple[_Rule, ...]:
     """Return the rules of chunks that have none."""
     names = ("y by ry", "r red", "g grn green", "b blu blue")
     lossy = [
-        _Rule(suffix, kind, _COSINES, colour, True)
-        for colour, suffixes in enumerate(names)
+        _Rule(suffix, kind, _COSINES, color, True)
+        for color, suffixes in enumerate(names)
         for suffix in suffixes.split()
         for kind in (1, 2)
     ]

@@ -34,7 +34,7 @@ def write_layers(
     alpha: NDArray[np.float32] | None = None,
     aov: Mapping[str, NDArray[Any]] | None = None,
 ) -> None:
-    """Write linear colours as R, G, B, those that are multiplied by an `alpha` with that as A, and layers."""
+    """Write linear colors as R, G, B, those that are multiplied by an `alpha` with that as A, and layers."""
     channels = dict(zip("RGB", np.moveaxis(rgb, -1, 0), strict=True))
     attributes: dict[str, str] = {}
     if alpha is not None:

@@ -112,7 +112,7 @@ class Geometry:
             red, green, blue = tint.tolist()
             found = self._materials.of(primitive, Vertices(False, (red, green, blue), "colors"))
             return found, np.repeat(alpha[:, None], 3, axis=1), uv
-        self._document.tell("alpha that varies over colours of vertices is left out of textured materials")
+        self._document.tell("alpha that varies over colors of vertices is left out of textured materials")
         return surface, colors, uv
 
     def _corners(self, primitive: Part, count: int) -> NDArray[np.int64]:

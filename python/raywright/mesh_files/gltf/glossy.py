@@ -13,7 +13,7 @@ from .part import Part
 
 
 def of_glossy(part: Part, diffuse: Picture | None, glossy: Picture | None) -> Pbr:
-    """Return the metallic-roughness model of a diffuse and a specular colour and a glossiness.
+    """Return the metallic-roughness model of a diffuse and a specular color and a glossiness.
 
     Parameters
     ----------

@@ -52,10 +52,10 @@ class Vertices(NamedTuple):
     colored : bool
         True if each vertex has a color.
     tint : 3 floats
-        The colour that all of them have, otherwise.
+        The color that all of them have, otherwise.
     alpha : float or str
         The alpha of all of them, or its source: ``"u"`` in texture coordinates, ``"colors"`` in place of
-        their colours.
+        their colors.
     """
 
     colored: bool = False
@@ -64,7 +64,7 @@ class Vertices(NamedTuple):
 
 
 class Materials:
-    """The materials of a document, each made once for those with colours of vertices and once for others."""
+    """The materials of a document, each made once for those with colors of vertices and once for others."""
 
     def __init__(self, document: Document) -> None:
         self._document = document
@@ -135,10 +135,10 @@ class Materials:
         """Report the features of clear materials and of films that are not supported."""
         tell = self._document.tell
         if made.film is not None and made.transmission > 0 and made.is_tinted:
-            tell("light through clear materials with films is not tinted by their base colour")
+            tell("light through clear materials with films is not tinted by their base color")
         if made.film is not None and made.transmission == 0 and made.filmed != "all":
-            coloured = "films are left out of metals with colours of vertices and of opaque nonmetals"
-            tell(coloured if made.colored else "films are left out of opaque nonmetals")
+            colored = "films are left out of metals with colors of vertices and of opaque nonmetals"
+            tell(colored if made.colored else "films are left out of opaque nonmetals")
         if made.transmission > 0:
             if made.within is None and (made.roughness is None or made.roughness > 0):
                 tell("thin clear materials are smooth here, whatever their roughness")
@@ -147,7 +147,7 @@ class Materials:
 
 
 def _model(part: Part, seen: _Seen) -> Pbr:
-    """Return the colour of a material, and how metallic and how rough it is."""
+    """Return the color of a material, and how metallic and how rough it is."""
     glossy = part.extension("KHR_materials_pbrSpecularGlossiness")
     if glossy is not None:
         pictures = (seen.picture(glossy, name) for name in ("diffuseTexture", "specularGlossinessTexture"))
@@ -155,7 +155,7 @@ def _model(part: Part, seen: _Seen) -> Pbr:
     rough = part.part("pbrMetallicRoughness")
     return Pbr(
         color=rough.numbers("baseColorFactor", 4, None, 0, 1) if "baseColorFactor" in rough else None,
-        # Meshes keep one set of texture coordinates: that of the base colour, which is read first.
+        # Meshes keep one set of texture coordinates: that of the base color, which is read first.
         color_picture=seen.picture(rough, "baseColorTexture"),
         metallic=rough.number("metallicFactor", None, 0, 1) if "metallicFactor" in rough else None,
         roughness=rough.number("roughnessFactor", None, 0, 1) if "roughnessFactor" in rough else None,

@@ -34,7 +34,7 @@ class Part(NamedTuple):
     faces : (F, 3) array
         In the order of the file; polygons as in `triangulate`.
     normals, uv, colors : (V, 3), (V, 2), (V, 3) array, optional
-        Those of the vertices. Colours are numbers as they stand there.
+        Those of the vertices. Colors are numbers as they stand there.
     cells : (F,) array, optional
         Index of each one's face in the file; None if they are the same.
     """

@@ -1,4 +1,4 @@
-"""Materials of OBJ files as trimesh holds them: numbers, and the picture of the base colour."""
+"""Materials of OBJ files as trimesh holds them: numbers, and the picture of the base color."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ from .maps import BRIGHTEST, LEFT_OUT, Map, Pictures
 from .mtl import Description
 from .text import told_keyword
 
-_GREY = np.full(3, 0.5)
+_GRAY = np.full(3, 0.5)
 _HARDEST = 1e9
 # MeshLab and trimesh write an exponent of 0 or 1 for no highlight.
 _NO_HIGHLIGHT = 1.0
@@ -107,7 +107,7 @@ class _Reading:
         return self._pictures.of(self._said, keyword)
 
     def _color(self, keyword: str) -> NDArray[np.float64] | ImageTexture | None:
-        """Return a colour; a picture stands in place of the one beside it, in many files grey or black."""
+        """Return a color; a picture stands in place of the one beside it, in many files gray or black."""
         color, found = self._said.color(keyword), self._picture(f"map_{keyword}")
         return color if found is None else found.texture()
 
@@ -245,7 +245,7 @@ class _Reading:
             share = ProductTexture(_shares(found, exponent), _value(shiny))
         base = self._color("Kd")
         if base is None:
-            base = _GREY
+            base = _GRAY
         if not isinstance(base, Texture) and not isinstance(share, Texture):
             base = np.minimum(base, 1 - np.array(share))
         return BlinnPhong(_value(base), share, sharp)
@@ -256,7 +256,7 @@ class _Reading:
 
     def _base(self) -> Value:
         base = self._color("Kd")
-        return _value(_GREY if base is None else base)
+        return _value(_GRAY if base is None else base)
 
     def _raised(self, body: Material | None) -> Material | None:
         """Return a material with bumps, or with the normals of a picture."""

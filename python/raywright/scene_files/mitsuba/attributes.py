@@ -53,14 +53,14 @@ def all_within(plugin: Plugin) -> list[Mapping[str, Any]]:
 
 
 def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:
-    """Return whether an attribute is of faces rather than vertices, and its colours, (N, 3).
+    """Return whether an attribute is of faces rather than vertices, and its colors, (N, 3).
 
-    One number counts as a grey.
+    One number counts as a gray.
 
     Raises
     ------
     ValueError
-        If the file has no attribute of the name, or it is no colour.
+        If the file has no attribute of the name, or it is no color.
     """
     of, _, rest = name.partition("_")
     if of not in ("vertex", "face") or not rest:

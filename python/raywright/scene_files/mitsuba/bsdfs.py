@@ -31,7 +31,7 @@ from .principled import principled, principled_thin
 from .textures import TYPES as TEXTURES
 from .textures import normals, numbers, scalar, value
 from .uv import Uv
-from .values import colour
+from .values import color
 
 BLACK = Diffuse(0.0)
 
@@ -127,13 +127,13 @@ def _plastic(plugin: Plugin, uv: Uv) -> Sides:
         own, theirs = coats.rough(ior, rough.alpha, rough.distribution)
     nonlinear = plugin.switch("nonlinear", False)
 
-    def change(colours: NDArray[np.float64]) -> NDArray[np.float64]:
+    def change(colors: NDArray[np.float64]) -> NDArray[np.float64]:
         # The result c has c / (1 - own c) equal Mitsuba's r / (1 - theirs), or r / (1 - theirs r) if
         # nonlinear.
-        trapped = theirs * (colours if nonlinear else 1.0)
-        return np.minimum(colours / (1 - trapped + own * colours), 1.0)
+        trapped = theirs * (colors if nonlinear else 1.0)
+        return np.minimum(colors / (1 - trapped + own * colors), 1.0)
 
-    if colour(plugin, "specular_reflectance", 1.0) != (1.0, 1.0, 1.0):
+    if color(plugin, "specular_reflectance", 1.0) != (1.0, 1.0, 1.0):
         plugin.fail("specular_reflectance must be 1")
     reflectance = value(plugin, "diffuse_reflectance", 0.5, uv, change=change)
     return Sides(Plastic(reflectance, ior, **rough.arguments()), True)

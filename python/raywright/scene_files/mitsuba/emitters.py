@@ -28,7 +28,7 @@ from .plugin import Plugin, Triple
 from .sensors import field_of_view
 from .textures import picture
 from .transforms import Matrix, straightened
-from .values import UNIFORM, colour, shade
+from .values import UNIFORM, color, shade
 
 TYPES = ("point", "spot", "projector", "directional", "constant", "envmap", "sunsky")
 
@@ -121,7 +121,7 @@ def _picture_spot(
     share = np.where(angle <= beam, 1.0, np.where(angle < cutoff, fading, 0.0))
     u, v = np.broadcast_arrays(0.5 + 0.5 * x, 0.5 + 0.5 * y)
     image = thrown.at(texture, u, v) * (share * cosine**3)[..., None]
-    return _thrown(image, matrix, 2 * cutoff, colour(plugin, "intensity", 1.0, emits=True))
+    return _thrown(image, matrix, 2 * cutoff, color(plugin, "intensity", 1.0, emits=True))
 
 
 def _projector(plugin: Plugin) -> ProjectorLight:
@@ -133,7 +133,7 @@ def _projector(plugin: Plugin) -> ProjectorLight:
     tall = 2 * math.degrees(math.atan(math.tan(math.radians(0.5 * fov)) * height / axes[axis]))
     scale = math.pi * plugin.number("scale", 1.0)
     if texture is None:
-        image = np.broadcast_to(colour(plugin, "irradiance", 1.0, emits=True), (1, 1, 3))
+        image = np.broadcast_to(color(plugin, "irradiance", 1.0, emits=True), (1, 1, 3))
     else:
         # A multiple of the picture's pixels, or enough for the edges of a checkerboard. At its border Mitsuba
         # continues the texture, and a projector here is constant over half a pixel.
@@ -203,7 +203,7 @@ def _daylight(plugin: Plugin) -> SunSky:
     return SunSky(
         matrix @ sun,
         max(turbidity, 2.0),
-        colour(plugin, "albedo", 0.3),
+        color(plugin, "albedo", 0.3),
         matrix[:, 2],
         plugin.number("sun_scale", 1.0) / _SKY,
         plugin.number("sky_scale", 1.0) / _SKY,

@@ -44,7 +44,7 @@ def conductor(plugin: Plugin, uv: Uv) -> Material:
         if plugin.context.by_wavelength:
             metal = Conductor(name, **rough)
         else:
-            # RGB variants of Mitsuba convert eta and k to colours before computing reflection.
+            # RGB variants of Mitsuba convert eta and k to colors before computing reflection.
             index = metal_index(name)
             eta, k = (Spectrum(index.wavelengths, part).rgb for part in (index.eta, index.k))
             metal = Conductor(eta=_positive(eta), k=_positive(k), **rough)
@@ -120,7 +120,7 @@ def facets(plugin: Plugin, uv: Uv) -> Facets:
 
 
 def scaled(given: Material, plugin: Plugin, names: tuple[str, ...], uv: Uv) -> Material:
-    """Return a material scaled by a factor, the same for each of some parameters and grey."""
+    """Return a material scaled by a factor, the same for each of some parameters and gray."""
     shares = [value(plugin, name, 1.0, uv) for name in names]
     if any(isinstance(share, Texture) or len({*share}) != 1 for share in shares) or len({*shares}) != 1:
         plugin.fail(f"{' and '.join(names)} must be one number{', the same' if len(names) > 1 else ''}")

@@ -15,7 +15,7 @@ from ...media.files import read_density
 from ...textures import Spectrum
 from .errors import SceneError
 from .plugin import Plugin, Triple
-from .values import colour, shade
+from .values import color, shade
 
 TYPES = ("homogeneous", "heterogeneous")
 PHASES = ("isotropic", "hg", "rayleigh")
@@ -127,17 +127,17 @@ def _read(plugin: Plugin, box: Box | None) -> Medium:
         if shares is not None and shares.type == "gridvolume":
             if box is None:
                 plugin.fail("albedo on a grid is read within meshes only")
-            extinction = scale * np.array(colour(plugin, "sigma_t", 1.0))
+            extinction = scale * np.array(color(plugin, "sigma_t", 1.0))
             return _shared(plugin, grid(shares, WRAPS), box, extinction, phase)
         albedo = _constant(plugin, "albedo", 0.75)
         return Homogeneous(*_parts(_constant(plugin, "sigma_t", 1.0), albedo, scale), phase)
     # No medium exists outside the volume of the extinction.
     dimmed = _volume(plugin, "sigma_t", 1.0)
     scattered = _volume(plugin, "albedo", 0.75)
-    extinction = scale * dimmed.colour
+    extinction = scale * dimmed.color
     placed = {"bounds": dimmed.bounds, "transform": dimmed.transform, "at": "centers", "phase": phase}
     if scattered.numbers is None:
-        absorption, scattering = extinction * (1 - scattered.colour), extinction * scattered.colour
+        absorption, scattering = extinction * (1 - scattered.color), extinction * scattered.color
         return GridMedium(dimmed.density, absorption=absorption, scattering=scattering, **placed)
     if scattered.bounds != dimmed.bounds or not np.array_equal(scattered.transform, dimmed.transform):
         plugin.fail("sigma_t and albedo must lie in the same place")
@@ -208,9 +208,9 @@ def _constant(plugin: Plugin, name: str, default: float) -> Triple | Spectrum:
 
 
 class Volume(NamedTuple):
-    """Numbers over the unit cube, or bounds, wherever a transform takes these; else a colour."""
+    """Numbers over the unit cube, or bounds, wherever a transform takes these; else a color."""
 
-    colour: NDArray[np.float64]
+    color: NDArray[np.float64]
     numbers: NDArray[Any] | None = None
     bounds: Any = None
     transform: Any = None
@@ -225,9 +225,9 @@ class Volume(NamedTuple):
 def _volume(medium: Plugin, name: str, default: float) -> Volume:
     plugin = medium.child(name)
     if plugin is None or plugin.type not in VOLUMES:
-        return Volume(np.array(colour(medium, name, default)), transform=np.eye(4))
+        return Volume(np.array(color(medium, name, default)), transform=np.eye(4))
     if plugin.type == "constvolume":
-        value, transform = np.array(colour(plugin, "value", 1.0)), plugin.to_world()
+        value, transform = np.array(color(plugin, "value", 1.0)), plugin.to_world()
         plugin.done()
         return Volume(value, transform=transform)
     return grid(plugin, ("clamp",))

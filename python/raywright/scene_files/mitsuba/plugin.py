@@ -76,7 +76,7 @@ class Context:
 
 
 def _is_spectrum(plugin: Mapping[str, Any]) -> bool:
-    """Tell whether a plugin is a colour by wavelength."""
+    """Tell whether a plugin is a color by wavelength."""
     if plugin.get("type") in ("regular", "irregular", "blackbody"):
         return True
     value = plugin.get("value")

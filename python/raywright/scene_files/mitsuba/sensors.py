@@ -40,7 +40,7 @@ class Crop(NamedTuple):
         return self.size == self.part and self.offset == (0, 0)
 
     @property
-    def centred(self) -> bool:
+    def centered(self) -> bool:
         """True if it is the picture's middle, in the same proportions."""
         (w, h), (a, b), (x, y) = self
         return w - a == 2 * x and h - b == 2 * y and a * h == b * w
@@ -126,7 +126,7 @@ def _perspective(plugin: Plugin, crop: Crop) -> Camera:
 
 def _thin_lens(plugin: Plugin, crop: Crop) -> ThinLens:
     fov, axis = field_of_view(plugin)
-    if not crop.centred:
+    if not crop.centered:
         plugin.fail("of a thin lens only the middle of the film can be rendered")
     # The crop is the same share of both axes, so the axis of the field of view does not matter.
     fov = 2 * math.degrees(math.atan(math.tan(math.radians(0.5 * fov)) * crop.part[0] / crop.size[0]))
@@ -214,5 +214,5 @@ def field_of_view(plugin: Plugin) -> tuple[float, str]:
     except ValueError:
         length = 0.0
     if not length > 0:
-        plugin.fail(f"focal_length must be millimetres of a 35 mm film, as '50mm', got {given!r}")
+        plugin.fail(f"focal_length must be millimeters of a 35 mm film, as '50mm', got {given!r}")
     return 2 * math.degrees(math.atan(math.hypot(36, 24) / (2 * length))), "diagonal"

@@ -15,7 +15,7 @@ from .errors import SceneError
 Floats = NDArray[np.float64]
 
 _MAGIC = 0x041C
-_NORMALS, _COORDINATES, _COLOURS, _DOUBLE = 0x0001, 0x0002, 0x0008, 0x2000
+_NORMALS, _COORDINATES, _COLORS, _DOUBLE = 0x0001, 0x0002, 0x0008, 0x2000
 # Longest name to read.
 _LONGEST_NAME = 4096
 # Zeros inflate a thousandfold, so a file may claim any size; a larger one is no mesh.
@@ -85,7 +85,7 @@ def _mesh(data: bytes, place: tuple[int, int], path: Path) -> Stored:
     vertices = stream.array(number, vertex_count, 3)
     normals = stream.array(number, vertex_count, 3) if flags & _NORMALS else None
     uv = stream.array(number, vertex_count, 2) if flags & _COORDINATES else None
-    if flags & _COLOURS:
+    if flags & _COLORS:
         stream.array(number, vertex_count, 3)
     faces = stream.array(np.dtype("<u4"), face_count, 3).astype(np.int64)
     if len(faces) and faces.max() >= vertex_count:

@@ -74,20 +74,20 @@ def _colored(plugin: Plugin, placed: mesh_files.Triangles, names: set[str]) -> t
     if len(solids) + len(names) > 1:
         plugin.fail("one volume or mesh_attribute of a mesh is read")
     if solids:
-        fine, colours = solid.coloured(placed, solids[0])
-        return (Mesh(*fine, *_look(plugin, SAME, box=placed.box), colours),)
+        fine, colors = solid.colored(placed, solids[0])
+        return (Mesh(*fine, *_look(plugin, SAME, box=placed.box), colors),)
     if not names:
         return _by_hand(plugin, placed)
     if plugin.type != "ply":
         plugin.fail(f"mesh_attribute is read of ply files only, and {plugin.type} has none")
-    of_faces, colours = attributes.read_attribute(plugin.path(), names.pop())
+    of_faces, colors = attributes.read_attribute(plugin.path(), names.pop())
     if of_faces:
-        # Faces do not share corners, so that each keeps its colour.
+        # Faces do not share corners, so that each keeps its color.
         corners = faces.reshape(-1)
-        vertices, colours = vertices[corners], np.repeat(colours, 3, axis=0)
+        vertices, colors = vertices[corners], np.repeat(colors, 3, axis=0)
         normals, uv = (None if one is None else one[corners] for one in (normals, uv))
         faces = np.arange(len(corners)).reshape(-1, 3)
-    return (Mesh(vertices, faces, normals, uv, *_look(plugin, SAME), colours),)
+    return (Mesh(vertices, faces, normals, uv, *_look(plugin, SAME), colors),)
 
 
 def _by_hand(plugin: Plugin, triangles: mesh_files.Triangles) -> tuple[Mesh, ...]:
@@ -133,7 +133,7 @@ def _distance_grid(plugin: Plugin) -> Mesh:
     found = sdf_grids.surface(grid)
     triangles = mesh_files.Triangles(found.vertices, found.faces, found.normals)
     vertices, faces, normals, _ = triangles.placed(plugin.to_world(), plugin.switch("flip_normals", False))
-    # The whole surface has the colour of the texture's first corner; of a checkerboard, barely within that
+    # The whole surface has the color of the texture's first corner; of a checkerboard, barely within that
     # cell.
     corner = np.full((len(vertices), 2), _CORNER)
     return Mesh(vertices, faces, None if plain else normals, corner, *_look(plugin, SAME))
@@ -229,7 +229,7 @@ def _look(
     found = [bsdfs.material(inner, uv) for inner in plugin.children(*bsdfs.TYPES)]
     if len(found) > 1:
         plugin.fail("a shape must have one BSDF only")
-    # Default materials: black for lamps, a grey front for all others.
+    # Default materials: black for lamps, a gray front for all others.
     default = bsdfs.BLACK if emission is not None else TwoSided(Diffuse(0.5), bsdfs.BLACK)
     material = media.filled(plugin, found[0] if found else None, box) or default
     plugin.ignore("silhouette_sampling_weight")

@@ -1,4 +1,4 @@
-"""Textures that are volumes: the colours of a grid, where the faces of a mesh lie in it."""
+"""Textures that are volumes: the colors of a grid, where the faces of a mesh lie in it."""
 
 from __future__ import annotations
 
@@ -40,18 +40,18 @@ def grids_within(plugin: Plugin) -> list[Plugin]:
     return list({id(one.values): one for one in found if one.type == "gridvolume"}.values())
 
 
-def coloured(triangles: Triangles, plugin: Plugin) -> tuple[Triangles, Floats]:
-    """Return a mesh so fine that a grid is nearly even between its vertices, and their colours, (V, 3)."""
+def colored(triangles: Triangles, plugin: Plugin) -> tuple[Triangles, Floats]:
+    """Return a mesh so fine that a grid is nearly even between its vertices, and their colors, (V, 3)."""
     volume = media.grid(plugin, media.WRAPS)
     assert volume.numbers is not None
     low, high = _ends(volume)
     cell = np.linalg.norm(volume.transform[:3, :3], axis=0) * (high - low) / volume.numbers.shape[:3]
     fine = _refined(triangles, _PART * float(cell.min()))
-    return fine, colours_at(volume, fine.vertices)
+    return fine, colors_at(volume, fine.vertices)
 
 
-def colours_at(volume: media.Volume, points: Floats) -> Floats:
-    """Return the colours of a grid at points, (N, 3): in proportion between the middles of cells."""
+def colors_at(volume: media.Volume, points: Floats) -> Floats:
+    """Return the colors of a grid at points, (N, 3): in proportion between the middles of cells."""
     assert volume.numbers is not None
     numbers = np.atleast_3d(volume.numbers).astype(np.float64)
     numbers = numbers[..., None] if numbers.ndim == 3 else numbers

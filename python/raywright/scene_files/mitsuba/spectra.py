@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...textures.blackbody import planck
 
-# Colour of an equal-energy spectrum of luminance 1: reddish, as white is D65. By Mitsuba's matrix from CIE
+# Color of an equal-energy spectrum of luminance 1: reddish, as white is D65. By Mitsuba's matrix from CIE
 # 1931 XYZ (ITU-R BT.709).
 EVEN = np.array((1.204794, 0.948291, 0.908916))
 

@@ -15,14 +15,14 @@ from ...textures.texture import Number, Texture, Value
 from .plugin import Plugin, Triple
 from .solid import VOLUME, held
 from .uv import UPRIGHT, Uv
-from .values import UNIFORM, at_each_nm, colour, of_plugin, shade
+from .values import UNIFORM, at_each_nm, color, of_plugin, shade
 
 # Luminance of linear Rec. 709.
 _LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
 
 TYPES = ("bitmap", "checkerboard", "mesh_attribute", VOLUME)
 
-# A change of colours, applied to constants and to each pixel of a picture.
+# A change of colors, applied to constants and to each pixel of a picture.
 Change = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -34,7 +34,7 @@ def value(
     emits: bool = False,
     change: Change | None = None,
 ) -> Value:
-    """Return a parameter that is a colour or a texture of colours.
+    """Return a parameter that is a color or a texture of colors.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def value(
         if change is None:
             return found
         if plugin.context.by_wavelength and not isinstance(found, Spectrum) and len({*found}) > 1:
-            # Among spectra, a colour becomes a smooth spectrum; the change applies to that.
+            # Among spectra, a color becomes a smooth spectrum; the change applies to that.
             nm = np.arange(360.0, 831.0, 5.0)
             found = Spectrum(nm, smooth_spectrum(found, True, False, nm.tolist()))
         return at_each_nm(found, change) if isinstance(found, Spectrum) else _changed(found, change)
@@ -68,7 +68,7 @@ def value(
 def scalar(plugin: Plugin, name: str, default: float, uv: Uv) -> Number:
     """Return a parameter that is a number or a texture.
 
-    Of a picture's colours the luminance counts, and of other colours the mean of red, green and blue.
+    Of a picture's colors the luminance counts, and of other colors the mean of red, green and blue.
     """
     inner = plugin.child(name)
     if inner is None:
@@ -76,7 +76,7 @@ def scalar(plugin: Plugin, name: str, default: float, uv: Uv) -> Number:
     if inner.type in UNIFORM:
         return float(np.mean(of_plugin(inner, False)))
     whole = _whole(inner)
-    return numbers(inner, uv) if whole is None else float(np.mean(colour(whole, "value", 1.0)))
+    return numbers(inner, uv) if whole is None else float(np.mean(color(whole, "value", 1.0)))
 
 
 def _whole(plugin: Plugin | None) -> Plugin | None:
@@ -94,32 +94,32 @@ def _whole(plugin: Plugin | None) -> Plugin | None:
 def numbers(plugin: Plugin, uv: Uv) -> Texture:
     """Return a texture of numbers."""
     if plugin.type == "checkerboard":
-        # For scalar parameters, Mitsuba (3.9) swaps the two colours.
+        # For scalar parameters, Mitsuba (3.9) swaps the two colors.
         return _checkerboard(plugin, uv, None, ("color1", "color0"))
-    return texture(plugin, uv, _grey, grey=True)
+    return texture(plugin, uv, _gray, gray=True)
 
 
-def _grey(colours: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.repeat((colours @ _LUMINANCE)[..., None], 3, axis=-1)
+def _gray(colors: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.repeat((colors @ _LUMINANCE)[..., None], 3, axis=-1)
 
 
-def texture(plugin: Plugin, uv: Uv, change: Change | None = None, grey: bool = False) -> Texture:
-    """Return a texture of colours, or if it is to be `grey`, of numbers that `change` makes of colours."""
+def texture(plugin: Plugin, uv: Uv, change: Change | None = None, gray: bool = False) -> Texture:
+    """Return a texture of colors, or if it is to be `gray`, of numbers that `change` makes of colors."""
     if plugin.type == "bitmap":
-        return _bitmap(plugin, uv, change, grey)
+        return _bitmap(plugin, uv, change, gray)
     if plugin.type == "checkerboard":
         return _checkerboard(plugin, uv, change, ("color0", "color1"))
     if plugin.type == "mesh_attribute":
-        return _attribute(plugin, None if grey else change)
+        return _attribute(plugin, None if gray else change)
     if plugin.type == VOLUME:
-        return _solid(plugin, None if grey else change)
+        return _solid(plugin, None if gray else change)
     plugin.fail("this kind of texture is not supported")
 
 
 def _attribute(plugin: Plugin, change: Change | None) -> Texture:
     """Return what the vertices of a mesh have, which is given to it with its shape."""
     if change is not None:
-        plugin.fail("it cannot colour the base of a plastic")
+        plugin.fail("it cannot color the base of a plastic")
     plugin.text("name")
     scale = plugin.number("scale", 1.0)
     plugin.done()
@@ -129,7 +129,7 @@ def _attribute(plugin: Plugin, change: Change | None) -> Texture:
 def _solid(plugin: Plugin, change: Change | None) -> Texture:
     """Return what a grid has at the vertices of a mesh, which is given to it with its shape."""
     if change is not None:
-        plugin.fail("it cannot colour the base of a plastic")
+        plugin.fail("it cannot color the base of a plastic")
     held(plugin)
     plugin.done()
     return VertexColors()
@@ -167,16 +167,16 @@ def picture(plugin: Plugin) -> tuple[NDArray[Any], bool]:
 def heights(plugin: Plugin) -> NDArray[np.float64]:
     """Return the luminance of the picture that a plugin names or holds, (H, W)."""
     array, linear = picture(plugin)
-    colours = linear_colours(array, linear)
-    return colours[..., 0] if array.shape[2] == 1 else colours @ _LUMINANCE
+    colors = linear_colors(array, linear)
+    return colors[..., 0] if array.shape[2] == 1 else colors @ _LUMINANCE
 
 
 def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
     """Return a picture of normals, along u and v as in raywright."""
 
-    def turn(colours: NDArray[np.float64]) -> NDArray[np.float64]:
+    def turn(colors: NDArray[np.float64]) -> NDArray[np.float64]:
         # Mitsuba's bitangent makes a right-handed frame with u and the normal.
-        return np.stack([colours[..., 0], 1 - colours[..., 1], colours[..., 2]], -1)
+        return np.stack([colors[..., 0], 1 - colors[..., 1], colors[..., 2]], -1)
 
     if plugin.type == "rawconstant":
         tilted = np.array([[plugin.vector("value", (0.5, 0.5, 1.0))]], np.float64)
@@ -191,16 +191,16 @@ def normals(plugin: Plugin, uv: Uv) -> ImageTexture:
     return _bitmap(plugin, uv, turn if uv.left_handed else None, False)
 
 
-def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, grey: bool) -> ImageTexture:
+def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, gray: bool) -> ImageTexture:
     array, linear = picture(plugin)
     nearest = plugin.choice("filter_type", "bilinear", ("bilinear", "nearest")) == "nearest"
     wrap = plugin.choice("wrap_mode", "repeat", ("repeat", "mirror", "clamp"))
     matrix = UPRIGHT @ plugin.to_uv() @ uv.matrix
     plugin.ignore("format", "accel")
     plugin.done()
-    if change is not None and not (grey and array.shape[2] == 1):
-        array, linear = change(linear_colours(array, linear)).astype(np.float32), True
-        array = array[..., :1] if grey else array
+    if change is not None and not (gray and array.shape[2] == 1):
+        array, linear = change(linear_colors(array, linear)).astype(np.float32), True
+        array = array[..., :1] if gray else array
     return ImageTexture(
         array,
         linear=linear,
@@ -210,8 +210,8 @@ def _bitmap(plugin: Plugin, uv: Uv, change: Change | None, grey: bool) -> ImageT
     )
 
 
-def linear_colours(array: NDArray[Any], linear: bool) -> NDArray[np.float64]:
-    """Return a picture as linear colours, (H, W, 3)."""
+def linear_colors(array: NDArray[Any], linear: bool) -> NDArray[np.float64]:
+    """Return a picture as linear colors, (H, W, 3)."""
     shares = array / np.iinfo(array.dtype).max if array.dtype.kind == "u" else array.astype(np.float64)
     if not linear:
         shares = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .plugin import Plugin
-from .textures import linear_colours, picture
-from .values import UNIFORM, colour, of_plugin
+from .textures import linear_colors, picture
+from .values import UNIFORM, color, of_plugin
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ def size_of(plugin: Plugin) -> tuple[int, int]:
 
 
 def at(plugin: Plugin, u: Floats, v: Floats) -> Floats:
-    """Return the colours of a texture at coordinates as in Mitsuba, (..., 3), and take it.
+    """Return the colors of a texture at coordinates as in Mitsuba, (..., 3), and take it.
 
     Raises
     ------
@@ -37,26 +37,24 @@ def at(plugin: Plugin, u: Floats, v: Floats) -> Floats:
     matrix = plugin.to_uv()
     x, y = (matrix[row, 0] * u + matrix[row, 1] * v + matrix[row, 2] for row in range(2))
     if plugin.type == "checkerboard":
-        a, b = (colour(plugin, name, default) for name, default in (("color0", 0.4), ("color1", 0.2)))
+        a, b = (color(plugin, name, default) for name, default in (("color0", 0.4), ("color1", 0.2)))
         plugin.done()
         same = (x - np.floor(x) > 0.5) == (y - np.floor(y) > 0.5)
         return np.where(same[..., None], a, b)
-    colours = linear_colours(*picture(plugin))
+    colors = linear_colors(*picture(plugin))
     nearest = plugin.choice("filter_type", "bilinear", ("bilinear", "nearest")) == "nearest"
     wrap = plugin.choice("wrap_mode", "repeat", ("repeat", "mirror", "clamp"))
     plugin.ignore("format", "accel")
     plugin.done()
-    height, width = colours.shape[:2]
+    height, width = colors.shape[:2]
     x, y = x * width, y * height
     if nearest:
-        return colours[_wrapped(np.floor(y), height, wrap), _wrapped(np.floor(x), width, wrap)]
+        return colors[_wrapped(np.floor(y), height, wrap), _wrapped(np.floor(x), width, wrap)]
     left, top = np.floor(x - 0.5), np.floor(y - 0.5)
     across, down = (x - 0.5 - left)[..., None], (y - 0.5 - top)[..., None]
     columns = [_wrapped(left + k, width, wrap) for k in range(2)]
     rows = [_wrapped(top + k, height, wrap) for k in range(2)]
-    above, below = (
-        colours[row, columns[0]] * (1 - across) + colours[row, columns[1]] * across for row in rows
-    )
+    above, below = (colors[row, columns[0]] * (1 - across) + colors[row, columns[1]] * across for row in rows)
     return np.asarray(above * (1 - down) + below * down)
 
 

@@ -31,7 +31,7 @@ class Uv(NamedTuple):
 SAME = Uv(np.eye(3))
 # The latitude starts at the pole on +z.
 SPHERE = Uv(np.array([(1.0, 0.0, 0.0), (0.0, -1.0, 1.0), (0.0, 0.0, 1.0)]))
-# u is the distance from the centre, and v the angle.
+# u is the distance from the center, and v the angle.
 DISK = Uv(np.array([(0.0, -1.0, 1.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]), turned=True)
 # Meshes with a left-handed frame of u, v and the normal, such as the cube.
 MIRRORED = Uv(np.eye(3), left_handed=True)

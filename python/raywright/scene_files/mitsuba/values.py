@@ -1,4 +1,4 @@
-"""Colours, as linear red, green and blue (Rec. 709), and spectra."""
+"""Colors, as linear red, green and blue (Rec. 709), and spectra."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ...textures import Spectrum
 from . import spectra
 from .plugin import Plugin, Triple
 
-# Plugin types with one constant colour or number.
+# Plugin types with one constant color or number.
 UNIFORM = (
     "rgb", "srgb", "spectrum", "uniform", "regular", "irregular", "d65", "rawconstant", "blackbody",
 )  # fmt: skip
 
 
-def colour(plugin: Plugin, name: str, default: float | Triple, emits: bool = False) -> Triple:
-    """Return a parameter of a plugin that is one colour; one by wavelength is approximated, and warned of.
+def color(plugin: Plugin, name: str, default: float | Triple, emits: bool = False) -> Triple:
+    """Return a parameter of a plugin that is one color; one by wavelength is approximated, and warned of.
 
     Arguments are those of `shade`.
     """
@@ -28,7 +28,7 @@ def colour(plugin: Plugin, name: str, default: float | Triple, emits: bool = Fal
 
 
 def of_plugin(plugin: Plugin, emits: bool) -> Triple:
-    """Return the colour of a plugin of a type in `UNIFORM`, as `colour` does."""
+    """Return the color of a plugin of a type in `UNIFORM`, as `color` does."""
     return _plain(plugin, shade_of(plugin, emits), emits)
 
 
@@ -40,7 +40,7 @@ def _plain(plugin: Plugin, found: Triple | Spectrum, emits: bool) -> Triple:
 
 
 def shade(plugin: Plugin, name: str, default: float | Triple, emits: bool = False) -> Triple | Spectrum:
-    """Return a parameter of a plugin that is one colour, or goes with wavelength.
+    """Return a parameter of a plugin that is one color, or goes with wavelength.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def shade(plugin: Plugin, name: str, default: float | Triple, emits: bool = Fals
 
 
 def shade_of(plugin: Plugin, emits: bool) -> Triple | Spectrum:
-    """Return the colour or the spectrum of a plugin of a type in `UNIFORM`."""
+    """Return the color or the spectrum of a plugin of a type in `UNIFORM`."""
     kind = plugin.type
     result: Triple | Spectrum
     if kind in ("rgb", "srgb", "rawconstant"):
@@ -74,7 +74,7 @@ def shade_of(plugin: Plugin, emits: bool) -> Triple | Spectrum:
         result = _hex(plugin, value, coded) if isinstance(value, str) else of_numbers(plugin, name, value)
     elif kind == "d65":
         scale = plugin.number("scale", 1.0)
-        result = _triple(np.multiply(colour(plugin, "color", 1.0), scale))
+        result = _triple(np.multiply(color(plugin, "color", 1.0), scale))
     elif kind == "blackbody":
         kelvin, scale = plugin.number("temperature", 5000.0), plugin.number("scale", 1.0)
         if not kelvin > 0:
@@ -100,7 +100,7 @@ def shade_of(plugin: Plugin, emits: bool) -> Triple | Spectrum:
 
 
 def of_numbers(plugin: Plugin, name: str, value: Any) -> Triple:
-    """Return one number or three as a colour."""
+    """Return one number or three as a color."""
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):

@@ -184,8 +184,8 @@ class _Reader:
             "integer": int,
             "boolean": _boolean,
             "string": str,
-            "rgb": lambda text: {"type": "rgb", "value": _colour(text)},
-            "srgb": lambda text: {"type": "srgb", "color": _colour(text)},
+            "rgb": lambda text: {"type": "rgb", "value": _color(text)},
+            "srgb": lambda text: {"type": "srgb", "color": _color(text)},
             "spectrum": lambda text: {"type": "spectrum", "value": _spectrum(text)},
         }
         if tag not in readers:
@@ -297,7 +297,7 @@ def numbers(text: str) -> list[float]:
     return [float(part) for part in text.replace(",", " ").split()]
 
 
-def _colour(text: str) -> Any:
+def _color(text: str) -> Any:
     if text.startswith("#"):
         return text
     found = numbers(text)

@@ -79,11 +79,11 @@ def film(kind: str, parameters: Parameters) -> Film:
             parameters.fail(f"{name} is not supported")
     if parameters.text("sensor", "cie1931") != "cie1931":
         # White is daylight of 6500 K with or without a sensor.
-        parameters.notes.tell("a film's sensor is left out: colours are those that the eye sees")
+        parameters.notes.tell("a film's sensor is left out: colors are those that the eye sees")
     white = _above_0(parameters, "whitebalance", 0.0, zero=True)
     if white and not math.isclose(white, 6500, rel_tol=0.01):
         parameters.notes.tell(
-            "whitebalance is applied to the light: exact for grey surfaces, approximate for others"
+            "whitebalance is applied to the light: exact for gray surfaces, approximate for others"
         )
     if parameters.has("maxcomponentvalue"):
         parameters.notes.tell(

@@ -20,7 +20,7 @@ from ...lights import (
     SpotLight,
 )
 from .parameters import Floats, Parameters
-from .spectra import colour
+from .spectra import color
 from .textures import Textures
 
 
@@ -90,13 +90,13 @@ def _total(parameters: Parameters, name: str, of_one: float) -> float:
 
 def _shine(parameters: Parameters, name: str, scale: float, imaging: Floats) -> tuple[float, float, float]:
     red, green, blue = (
-        float(x) for x in imaged(colour(parameters, name, 1.0, emits=True), scale * imaging, parameters)
+        float(x) for x in imaged(color(parameters, name, 1.0, emits=True), scale * imaging, parameters)
     )
     return red, green, blue
 
 
 def imaged(radiance: Any, imaging: Floats, parameters: Parameters) -> NDArray[Any]:
-    """Return light of any colour, (..., 3), as a film gets it. Negative light stays as it is."""
+    """Return light of any color, (..., 3), as a film gets it. Negative light stays as it is."""
     given = np.asarray(radiance)
     factor, matrix = _factored(imaging)
     if matrix is None:

@@ -27,7 +27,7 @@ from ...textures import ImageTexture
 from ...textures.texture import Number, Texture
 from ..notes import Notes
 from .parameters import Parameters
-from .spectra import GLASS, colour
+from .spectra import GLASS, color
 from .textures import Textures, bounded
 
 REFUSED = ("hair", "measured", "subsurface")
@@ -103,11 +103,11 @@ class Materials:
             made = NormalMap(made, ImageTexture(path, linear=True))
         return made
 
-    def _colour(self, parameters: Parameters, name: str, default: float) -> Any:
+    def _color(self, parameters: Parameters, name: str, default: float) -> Any:
         return bounded(self._textures.value(parameters, name, default), name)
 
     def _diffuse(self, parameters: Parameters) -> Material:
-        return Diffuse(self._colour(parameters, "reflectance", 0.5))
+        return Diffuse(self._color(parameters, "reflectance", 0.5))
 
     def _alpha(self, parameters: Parameters, prefix: str = "", default: float = 0.0) -> tuple[Number, Number]:
         both = self._textures.number(parameters, f"{prefix}roughness", default)
@@ -156,7 +156,7 @@ class Materials:
         if isinstance(u, Texture) or isinstance(v, Texture):
             parameters.fail("the roughness of a coat must be a number")
         return Plastic(
-            self._colour(parameters, "reflectance", 0.5),
+            self._color(parameters, "reflectance", 0.5),
             self._ior(parameters, "eta", 1.5),
             alpha=math.sqrt(u * v),
         )
@@ -177,7 +177,7 @@ class Materials:
         rough: dict[str, Any] = {"alpha": alpha, "multiple_scattering": False}
         reflectance = f"{prefix}reflectance" if parameters.has(f"{prefix}reflectance") else "reflectance"
         if parameters.has(reflectance):
-            share = np.minimum(colour(parameters, reflectance, 0.5), 0.9999)
+            share = np.minimum(color(parameters, reflectance, 0.5), 0.9999)
             if share.min() < 0:
                 parameters.fail(f"{reflectance} must be at least 0, got {share.min():g}")
             return Conductor(eta=1.0, k=2 * np.sqrt(share) / np.sqrt(1 - share), **rough)
@@ -196,8 +196,8 @@ class Materials:
             parameters.ignore(f"{prefix}eta", f"{prefix}k")
             metal = str(names[0] or "metal-Cu-eta").removeprefix("metal-").removesuffix("-eta")
             return Conductor(metal, **rough)
-        eta = np.maximum(colour(parameters, f"{prefix}eta", 1.0), 1e-9)
-        return Conductor(eta=eta, k=colour(parameters, f"{prefix}k", 1.0), **rough)
+        eta = np.maximum(color(parameters, f"{prefix}eta", 1.0), 1e-9)
+        return Conductor(eta=eta, k=color(parameters, f"{prefix}k", 1.0), **rough)
 
     def _dielectric(self, parameters: Parameters) -> Material:
         u, v = self._alpha(parameters)
@@ -210,7 +210,7 @@ class Materials:
 
     def _transmission(self, parameters: Parameters) -> Material:
         self._notes.tell("diffusetransmission is approximated by the principled sheet")
-        shares = [np.array(colour(parameters, name, 0.25)) for name in ("reflectance", "transmittance")]
+        shares = [np.array(color(parameters, name, 0.25)) for name in ("reflectance", "transmittance")]
         scale = parameters.number("scale", 1.0)
         total = np.minimum(scale * (shares[0] + shares[1]), 1.0)
         through = float(shares[1].sum() / max(shares[0].sum() + shares[1].sum(), 1e-300))

@@ -189,7 +189,7 @@ class _Reader:
             pass
         elif name == "ColorSpace":
             if one.texts[0] != "srgb":
-                raise PbrtError(f"{one.where}: a colour space must be srgb")
+                raise PbrtError(f"{one.where}: a color space must be srgb")
         elif name in ("MakeNamedMedium", "MediumInterface"):
             if name == "MakeNamedMedium" or any(one.texts):
                 raise PbrtError(f"{one.where}: {name} is not supported, as media are not")

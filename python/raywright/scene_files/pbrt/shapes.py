@@ -22,7 +22,7 @@ from ...shapes.mesh_changes import wound
 from ..tubes import b_spline
 from .lights import imaged
 from .parameters import Floats, Parameters
-from .spectra import colour
+from .spectra import color
 from .textures import Textures
 
 # Converts control points of a cubic Bézier curve to those of the equivalent uniform B-spline.
@@ -58,7 +58,7 @@ def emission(parameters: Parameters, imaging: Floats) -> Emission:
         if parameters.has(name):
             parameters.fail(f"{name} is not supported")
     scale = parameters.number("scale", 1.0)
-    given = colour(parameters, "L", 1.0, emits=True)
+    given = color(parameters, "L", 1.0, emits=True)
     radiance = tuple(float(x) for x in imaged(given, scale * imaging, parameters))
     side = "both" if parameters.switch("twosided", False) else "front"
     parameters.done()

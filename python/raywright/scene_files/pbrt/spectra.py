@@ -1,4 +1,4 @@
-"""Colours and spectra, as linear red, green and blue (Rec. 709)."""
+"""Colors and spectra, as linear red, green and blue (Rec. 709)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .parameters import Parameters
 
 Triple = tuple[float, float, float]
 
-# Catalogue names of pbrt's glasses; those of F are Schott's SF.
+# Catalog names of pbrt's glasses; those of F are Schott's SF.
 GLASS = {
     "glass-BK7": "N-BK7",
     "glass-BAF10": "N-BAF10",
@@ -25,8 +25,8 @@ GLASS = {
 }
 
 
-def colour(parameters: Parameters, name: str, default: float | Triple, emits: bool = False) -> Triple:
-    """Return a parameter that is one colour.
+def color(parameters: Parameters, name: str, default: float | Triple, emits: bool = False) -> Triple:
+    """Return a parameter that is one color.
 
     Emission that is no rgb has a luminance of 1, as in pbrt.
     """
@@ -55,7 +55,7 @@ def colour(parameters: Parameters, name: str, default: float | Triple, emits: bo
 
 
 def black_body(kelvin: float) -> NDArray[np.float64]:
-    """Return the colour of a black body (Planck, 1900), of any brightness."""
+    """Return the color of a black body (Planck, 1900), of any brightness."""
     table = planck(kelvin)
     table[:, 1] /= table[:, 1].max()
     return np.maximum(_core.spectrum_rgb(table.tolist(), False), 0.0)

@@ -14,7 +14,7 @@ from ...io.pictures import read
 from ...textures import Checker, ImageTexture, MixTexture, ProductTexture, UvTransform
 from ...textures.texture import Number, Texture, Value, ends
 from .parameters import Parameters
-from .spectra import colour
+from .spectra import color
 
 _WRAPS = {"repeat": "repeat", "clamp": "clamp", "mirror": "mirror", "octahedralsphere": "clamp"}
 _FILTERS = ("point", "bilinear", "trilinear", "ewa")
@@ -23,7 +23,7 @@ _LINEAR = (".exr", ".hdr", ".pfm", ".npy")
 
 
 class Textures:
-    """The textures of a scene by name: of colours, and of numbers.
+    """The textures of a scene by name: of colors, and of numbers.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Textures:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._colours: dict[str, Value] = {}
+        self._colors: dict[str, Value] = {}
         self._numbers: dict[str, Number] = {}
 
     def add(self, name: str, of: str, kind: str, parameters: Parameters) -> None:
@@ -48,20 +48,20 @@ class Textures:
             parameters.fail(f"a texture must be of spectrum or float, got {of!r}")
         made = self._made(kind, of == "spectrum", parameters)
         if of == "spectrum":
-            self._colours[name] = made
+            self._colors[name] = made
         else:
             self._numbers[name] = made if isinstance(made, Texture) else made[0]
         parameters.done()
 
     def value(self, parameters: Parameters, name: str, default: float | tuple[float, float, float]) -> Value:
-        """Return a parameter that is a colour or a texture of colours."""
+        """Return a parameter that is a color or a texture of colors."""
         found = parameters.given.get(name)
         if found is not None and found[0] == "texture":
             key = parameters.text(name)
-            if key not in self._colours:
-                parameters.fail(f"{name}: there is no texture of colours {key!r}")
-            return self._colours[key]
-        return colour(parameters, name, default)
+            if key not in self._colors:
+                parameters.fail(f"{name}: there is no texture of colors {key!r}")
+            return self._colors[key]
+        return color(parameters, name, default)
 
     def number(self, parameters: Parameters, name: str, default: float) -> Number:
         """Return a parameter that is a number or a texture of numbers."""
@@ -73,9 +73,9 @@ class Textures:
             return self._numbers[key]
         return parameters.number(name, default)
 
-    def _made(self, kind: str, coloured: bool, parameters: Parameters) -> Value:
+    def _made(self, kind: str, colored: bool, parameters: Parameters) -> Value:
         def part(name: str, default: float) -> Value:
-            if coloured:
+            if colored:
                 return self.value(parameters, name, default)
             number = self.number(parameters, name, default)
             return number if isinstance(number, Texture) else (number,) * 3
@@ -93,10 +93,10 @@ class Textures:
                 parameters.fail("a checkerboard must have 2 dimensions")
             return Checker(part("tex1", 1.0), part("tex2", 0.0), _placed(parameters))
         if kind == "imagemap":
-            return self._picture(coloured, parameters)
+            return self._picture(colored, parameters)
         parameters.fail(f"a texture {kind!r} is not supported")
 
-    def _picture(self, coloured: bool, parameters: Parameters) -> Value:
+    def _picture(self, colored: bool, parameters: Parameters) -> Value:
         path = self.folder / parameters.text("filename")
         wrap = _WRAPS.get(parameters.text("wrap", "repeat"))
         if wrap is None:
@@ -106,7 +106,7 @@ class Textures:
             parameters.fail(f"filter must be one of {', '.join(_FILTERS)}, got {filtered!r}")
         parameters.ignore("maxanisotropy")
         scale, inverted = parameters.number("scale", 1.0), parameters.switch("invert", False)
-        texels, linear = image_map(read(path), self._gamma(path, parameters), coloured)
+        texels, linear = image_map(read(path), self._gamma(path, parameters), colored)
         if inverted:
             # The scale applies before inversion, and negative results become 0.
             decoded = texels if texels.dtype.kind == "f" else decode(texels, 1.0 if linear else None)
@@ -143,7 +143,7 @@ class Textures:
         return gamma
 
 
-def image_map(picture: NDArray[Any], gamma: float | None, coloured: bool) -> tuple[NDArray[Any], bool]:
+def image_map(picture: NDArray[Any], gamma: float | None, colored: bool) -> tuple[NDArray[Any], bool]:
     """Return the texels of a picture, of one channel or of three, and whether their integers are linear.
 
     Parameters
@@ -152,15 +152,15 @@ def image_map(picture: NDArray[Any], gamma: float | None, coloured: bool) -> tup
         The picture.
     gamma : float, optional
         Decoding exponent of integers; sRGB if not given.
-    coloured : bool
+    colored : bool
         True if its colors count. If not, its alpha does where it has one that is not 1 everywhere, and the
-        mean of its colours elsewhere.
+        mean of its colors elsewhere.
     """
     channels = picture.shape[2]
-    if coloured or channels == 1:
+    if colored or channels == 1:
         texels = picture[..., : 3 if channels > 2 else 1]
     elif channels == 4 and (picture[..., 3] != _one(picture.dtype)).any():
-        # pbrt decodes alpha like the colours, too.
+        # pbrt decodes alpha like the colors, too.
         texels = picture[..., 3:]
     else:
         texels = picture[..., : 3 if channels > 2 else 1]

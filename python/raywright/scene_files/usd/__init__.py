@@ -63,7 +63,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     Notes
     -----
     Meshes are shown as their faces are, without being subdivided. Lights give off ``intensity`` times 2 to
-    the ``exposure`` as a radiance, or over their area where they are normalised.
+    the ``exposure`` as a radiance, or over their area where they are normalized.
     """
     try:
         from pxr import UsdUtils

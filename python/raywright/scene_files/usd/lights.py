@@ -53,7 +53,7 @@ def light(prim: Any, reading: Reading) -> Lit | None:
         return Lit("light", _point(source, matrix, shape))
     source.tell_cone()
     area = 1.0
-    if source.normalised:
+    if source.normalized:
         area = mesh_area(shape) if isinstance(shape, Mesh) else shape.area
     return Lit("shape", shining(shape, source.shine / area))
 
@@ -72,8 +72,8 @@ class Source:
     ----------
     shine : (3,) array
         Intensity times color times the camera's exposure: a radiance, or a power of its unit where it is
-        normalised.
-    normalised : bool
+        normalized.
+    normalized : bool
         True if the size of the light does not change its power.
     """
 
@@ -82,15 +82,15 @@ class Source:
 
         self.prim, self.reading = prim, reading
         api = UsdLux.LightAPI(prim)
-        colour = np.array(reading.value(api.GetColorAttr()), np.float64)
+        color = np.array(reading.value(api.GetColorAttr()), np.float64)
         if reading.value(api.GetEnableColorTemperatureAttr()):
             kelvin = float(reading.value(api.GetColorTemperatureAttr()))
-            colour = colour * np.array(UsdLux.BlackbodyTemperatureAsRgb(kelvin), np.float64)
+            color = color * np.array(UsdLux.BlackbodyTemperatureAsRgb(kelvin), np.float64)
         strength = float(reading.value(api.GetIntensityAttr())) * 2.0 ** float(
             reading.value(api.GetExposureAttr())
         )
-        self.shine = colour * strength * reading.exposure
-        self.normalised = bool(reading.value(api.GetNormalizeAttr()))
+        self.shine = color * strength * reading.exposure
+        self.normalized = bool(reading.value(api.GetNormalizeAttr()))
         self._cone = UsdLux.ShapingAPI(prim).GetShapingConeAngleAttr()
         self._tell(api)
 
@@ -137,7 +137,7 @@ def _irradiance(source: Source) -> float:
     angle = source.number("angle", 0.53)
     if source.prim.GetAttribute("inputs:angle").HasAuthoredValue() and angle > 0:
         source.reading.notes.tell("the angle of DistantLights is left out of their shadows, which are sharp")
-    if source.normalised or angle == 0:
+    if source.normalized or angle == 0:
         return 1.0
     return math.pi * math.sin(math.radians(0.5 * angle)) ** 2
 
@@ -145,10 +145,10 @@ def _irradiance(source: Source) -> float:
 def _point(source: Source, matrix: Matrix, ball: Any) -> PointLight | SpotLight:
     """Return a sphere from afar: its radiance times the area that is seen of it, a quarter of its own."""
     power = 1.0
-    if ball.radius > 0 and not source.normalised:
+    if ball.radius > 0 and not source.normalized:
         power = ball.area
-    elif not source.normalised:
-        source.reading.notes.tell("SphereLights without a radius are taken as normalised")
+    elif not source.normalized:
+        source.reading.notes.tell("SphereLights without a radius are taken as normalized")
     intensity, place, angle = 0.25 * power * source.shine, matrix[:3, 3], source.cone
     if angle is None or angle >= 180:
         return PointLight(place, intensity)

@@ -16,11 +16,11 @@ from .textures import Picture, Textures
 
 Triple = tuple[float, float, float]
 _BLACK: Triple = (0.0, 0.0, 0.0)
-_GREY: Triple = (0.5, 0.5, 0.5)
+_GRAY: Triple = (0.5, 0.5, 0.5)
 
 
 class Surface(NamedTuple):
-    """A material, its emission, and its primvars: of coordinates, and of colours if it needs them."""
+    """A material, its emission, and its primvars: of coordinates, and of colors if it needs them."""
 
     material: Material
     emission: Value | None = None
@@ -29,10 +29,10 @@ class Surface(NamedTuple):
     missing: Triple = _BLACK
 
 
-PLAIN = Surface(Diffuse(_GREY))
+PLAIN = Surface(Diffuse(_GRAY))
 
 
-def bound(prim: Any, reading: Reading, colour: Triple | None = None) -> Surface | None:
+def bound(prim: Any, reading: Reading, color: Triple | None = None) -> Surface | None:
     """Return the surface of the material that a prim is bound to; None if it is bound to none.
 
     Parameters
@@ -41,7 +41,7 @@ def bound(prim: Any, reading: Reading, colour: Triple | None = None) -> Surface 
         The prim.
     reading : Reading
         The stage.
-    colour : 3 floats, optional
+    color : 3 floats, optional
         The color of the prim, if it is the same everywhere, which is used for colors of vertices.
     """
     from pxr import UsdShade
@@ -49,26 +49,26 @@ def bound(prim: Any, reading: Reading, colour: Triple | None = None) -> Surface 
     material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
     if not material:
         return None
-    key = str(material.GetPath()), colour
+    key = str(material.GetPath()), color
     if key not in reading.surfaces:
         shader = material.ComputeSurfaceSource()[0]
         reading.surfaces[key] = PLAIN
         if not shader or shader.GetShaderId() != "UsdPreviewSurface":
-            reading.notes.tell("materials other than UsdPreviewSurface are shown as grey")
+            reading.notes.tell("materials other than UsdPreviewSurface are shown as gray")
         else:
-            reading.surfaces[key] = _Reader(Node(shader, reading), reading, colour).surface()
+            reading.surfaces[key] = _Reader(Node(shader, reading), reading, color).surface()
     return reading.surfaces[key]  # type: ignore[no-any-return]
 
 
 def own_surface(prim: Any, reading: Reading) -> Surface:
     """Return the surface of a prim without a material, which has one color."""
-    return coloured(own_color(prim, reading), opacity(prim, reading))
+    return colored(own_color(prim, reading), opacity(prim, reading))
 
 
 def own_color(prim: Any, reading: Reading) -> Triple:
-    """Return the displayColor of all of a prim; grey if it has none."""
+    """Return the displayColor of all of a prim; gray if it has none."""
     given = constant(prim, "displayColor", reading, 3)
-    red, green, blue = (float(x) for x in (_GREY if given is None else given.clip(0, 1)))
+    red, green, blue = (float(x) for x in (_GRAY if given is None else given.clip(0, 1)))
     return red, green, blue
 
 
@@ -78,18 +78,18 @@ def opacity(prim: Any, reading: Reading) -> float:
     return 1.0 if given is None else float(given[0].clip(0, 1))
 
 
-def coloured(colour: Triple | None, opacity: float = 1.0) -> Surface:
-    """Return the surface of a prim that has colours of its own, or one for all of it, and no material."""
-    made: Material = Diffuse(VertexColors() if colour is None else colour)
+def colored(color: Triple | None, opacity: float = 1.0) -> Surface:
+    """Return the surface of a prim that has colors of its own, or one for all of it, and no material."""
+    made: Material = Diffuse(VertexColors() if color is None else color)
     made = made if opacity == 1 else Mask(made, opacity)
-    return Surface(made, colors="displayColor" if colour is None else None)
+    return Surface(made, colors="displayColor" if color is None else None)
 
 
 class _Reader:
     """A UsdPreviewSurface, as far as it is read."""
 
-    def __init__(self, node: Node, reading: Reading, colour: Triple | None) -> None:
-        self._node, self._reading, self._vertex = node, reading, colour
+    def __init__(self, node: Node, reading: Reading, color: Triple | None) -> None:
+        self._node, self._reading, self._vertex = node, reading, color
         self._tell = reading.notes.tell
         self._textures = Textures(reading)
         self._uv: dict[str, None] = {}
@@ -99,7 +99,7 @@ class _Reader:
     def surface(self) -> Surface:
         self._tell_what_is_left_out()
         made: Material = MetallicRough(
-            self._colour("diffuseColor", 0.18, 1.0),
+            self._color("diffuseColor", 0.18, 1.0),
             self._number("metallic", 0.0),
             self._number("roughness", 0.5),
         )
@@ -107,7 +107,7 @@ class _Reader:
         link = self._node.link("normal")
         if link is not None and (normal := self._normal(link)) is not None:
             made = NormalMap(made, normal)
-        shine = self._colour("emissiveColor", 0.0, None)
+        shine = self._color("emissiveColor", 0.0, None)
         if len(self._uv) > 1:
             self._tell(f"textures of one material are placed by one primvar: {next(iter(self._uv))}")
         emission = None if shine == _BLACK else _times(shine, self._reading.exposure)
@@ -151,7 +151,7 @@ class _Reader:
         found = self._textures.normal(link)
         return None if found is None else self._placed(found)  # type: ignore[return-value]
 
-    def _colour(self, name: str, default: float, limit: float | None) -> Value:
+    def _color(self, name: str, default: float, limit: float | None) -> Value:
         link = self._node.link(name)
         if link is not None:
             if link.node.kind == "UsdUVTexture":

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...mesh_files.triangulation import polygon_of, triangulate
 from ...shapes.mesh import Mesh
-from .materials import Surface, bound, coloured, opacity, own_surface
+from .materials import Surface, bound, colored, opacity, own_surface
 from .primvars import Corners, found
 from .reading import Reading, numbers
 
@@ -84,10 +84,10 @@ def _tell_what_is_left_out(mesh: Any, reading: Reading) -> None:
 
 
 def _own(prim: Any, reading: Reading) -> Surface:
-    """Return the surface of meshes without a material: grey, or of their colors."""
+    """Return the surface of meshes without a material: gray, or of their colors."""
     primvar = found(prim, "displayColor")
     if primvar is not None and str(primvar.GetInterpolation()) != "constant":
-        return coloured(None, opacity(prim, reading))
+        return colored(None, opacity(prim, reading))
     return own_surface(prim, reading)
 
 

@@ -70,7 +70,7 @@ def _lamp(prim: Any, reading: Reading, found: list[Any]) -> list[Any]:
     source = Source(prim, reading)
     source.tell_cone()
     shine = source.shine
-    if source.normalised:
+    if source.normalized:
         shine = shine / sum(mesh_area(one) if isinstance(one, Mesh) else one.area for one in found)
     mode = str(reading.value(prim.GetAttribute("light:materialSyncMode"), "materialGlowTintsLight"))
     red, green, blue = (float(x) for x in shine)
