@@ -123,10 +123,10 @@ def sealed(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def same(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
-    """Return whether two arrays are equal, or neither is there; NaN is equal to NaN."""
+    """Return whether two arrays have the same type and values, or neither is there; NaN is equal to NaN."""
     if a is None or b is None:
         return a is b
-    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+    return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
 def triple(name: str, value: ArrayLike) -> Triple:
@@ -209,7 +209,7 @@ def seed_number(value: SeedLike, most: int | None = 2**64 - 1, name: str = "seed
 
 
 def thread_limit(threads: int | None) -> int | None:
-    """Return how many threads may be used, or None for one a core.
+    """Return how many threads may be used, or None for one per core.
 
     Many more threads than cores gain nothing and take long to start, so their number is limited.
     """

@@ -215,7 +215,7 @@ def _by_second(pairs: Integers, areas: Floats) -> list[tuple[int, list[tuple[int
 
 
 def _same_shapes(laid: LaidOut) -> dict[int, int]:
-    """Return faces of shapes that are no meshes and are listed before, and which these are."""
+    """Return faces of shapes that are not meshes and are listed before, and which these are."""
     places: dict[Any, int] = {}
     found, start = {}, 0
     for shape in laid.scene.shapes:

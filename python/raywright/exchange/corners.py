@@ -25,7 +25,7 @@ def at_corners(
     values : (N, 3)
         Of the patches.
     corners : (N, 3, 3)
-        Where they lie; NaN for shapes that are no triangles, which have one value everywhere.
+        Where they lie; NaN for shapes that are not triangles, which have one value everywhere.
     areas, shapes : (N,)
         Areas and shapes of the patches.
     """

@@ -69,7 +69,7 @@ def _error(
 
 
 def _first_light(problem: Problem, rays: int | None) -> tuple[Floats, Floats, Floats]:
-    """Return the irradiance by lights that are no surfaces, its error, and the books so far."""
+    """Return the irradiance by lights that are not surfaces, its error, and the books so far."""
     mine = _LIGHT_RAYS * len(problem.areas) if rays is None else max(rays // REPLICATES, 1)
     problem.begin(0, mine)
     arrived = problem.per_area(problem.core.arrived)

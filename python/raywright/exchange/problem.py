@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..arrays import integer, number
 from ..scene.scene import Scene
 from .coincident import NOTHING, Covered, merged
 from .copies import LaidOut, laid_out
@@ -23,10 +24,18 @@ EMITTED, UNSHOT, ESCAPED, BEHIND = range(4)
 
 
 def lamps_of(scene: Scene) -> Scene | None:
-    """Return a scene of the lights that are no surfaces, and nothing else; None if there are none."""
+    """Return a scene of the lights that are not surfaces, and nothing else; None if there are none."""
     if not scene.lights and scene.environment is None:
         return None
     return Scene([], scene.lights, scene.environment)
+
+
+def stop_criteria(error: float | None, rays: int | None) -> tuple[float | None, int | None]:
+    """Return the target error and the maximum number of rays, checked; None where it is not given."""
+    wanted = None if error is None else number("error", error)
+    if wanted is not None and wanted <= 0:
+        raise ValueError(f"error must be greater than 0, got {error}")
+    return wanted, None if rays is None else integer("rays", rays, 1, 2**50)
 
 
 @dataclass
@@ -209,8 +218,8 @@ class Problem:
             np.add.reduceat(part * self.areas[:count, None], starts) / whole[:, None]
             for part in np.split(values, len(values) // count)
         ]
-        for number, of_covered in enumerate(self.covered.sides(means)):
-            values[number * count + starts[self.covered.faces]] = of_covered
+        for part, of_covered in enumerate(self.covered.sides(means)):
+            values[part * count + starts[self.covered.faces]] = of_covered
         return values
 
 

@@ -17,7 +17,7 @@ from ..scene.scene import Scene, SceneLike
 from .coincident import Covered, merged
 from .copies import LaidOut, laid_out
 from .patches import exchanging
-from .problem import BEHIND, ESCAPED, REPLICATES, Problem, lamps_of
+from .problem import BEHIND, ESCAPED, REPLICATES, Problem, lamps_of, stop_criteria
 from .shooting import to_the_end
 from .solution import Floats, RadiositySolution
 
@@ -256,10 +256,7 @@ def radiative_exchange(
         _check("sky_temperature", np.array(above), np.array(above >= 0), "at least 0")
         _check("sky_temperature", np.array(above), np.array(above <= _HOTTEST), f"at most {_HOTTEST:g}")
         sky = Scene([], environment=ConstantEnvironment(STEFAN_BOLTZMANN * above**4 / np.pi))
-    wanted = None if error is None else number("error", error)
-    if wanted is not None and wanted <= 0:
-        raise ValueError(f"error must be greater than 0, got {error}")
-    limit = None if rays is None else integer("rays", rays, 1, 2**50)
+    wanted, limit = stop_criteria(error, rays)
     seed = seed_number(seed)
     workers = thread_limit(threads)
     check_progress(progress)
@@ -353,7 +350,7 @@ def _three(values: Floats) -> Floats:
 
 
 def _per_face(name: str, given: PerFace, faces: list[int]) -> Floats:
-    """Return one number a face of an argument that may have several forms."""
+    """Return one number per face of an argument that may have several forms."""
     if isinstance(given, Mapping):
         wrong = [key for key in given if key not in range(len(faces))]
         missing = [shape for shape in range(len(faces)) if shape not in given]

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any, Literal, get_args, overload
 
-from ..arrays import SeedLike, choice, integer, number, seed_number, thread_limit
+from ..arrays import SeedLike, choice, seed_number, thread_limit
 from ..scene.progress import BuildProgress, check_progress, watcher
 from ..scene.scene import SceneLike
 from .coincident import merged
 from .copies import laid_out
 from .patches import cut, exchanging
-from .problem import Problem, lamps_of
+from .problem import Problem, lamps_of, stop_criteria
 from .shooting import states as shooting_states
 from .shooting import to_the_end
 from .solution import Method, Per, RadiositySolution
@@ -100,7 +100,7 @@ def radiosity(
     seed : int, Generator or SeedSequence
         Seed of the random numbers; the same seed gives the same bits.
     threads : int, optional
-        Number of threads; one a core by default.
+        Number of threads; one per core by default.
     progress : bool or callable
         As for `Scene.build`: the share of the work.
     states : bool
@@ -158,10 +158,7 @@ def radiosity(
         raise ValueError(
             "sides must be 'front' for method='matrix', which has view factors of front sides only"
         )
-    wanted = None if error is None else number("error", error)
-    if wanted is not None and wanted <= 0:
-        raise ValueError(f"error must be greater than 0, got {error}")
-    limit = None if rays is None else integer("rays", rays, 1, 2**50)
+    wanted, limit = stop_criteria(error, rays)
     seed = seed_number(seed)
     threads = thread_limit(threads)
     check_progress(progress)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Triple, choice, number
+from ..arrays import Triple, choice, number, same
 from ..io.plots import plotted
 from ..io.value_plots import AXES, COLORS, Axis, bar, draw_faces, frame, scale
 from ..query.tabular import Tabular
@@ -329,7 +329,7 @@ class RadiositySolution(Tabular):
         Raises
         ------
         ValueError
-            If the name ends otherwise, and as `to_mesh` does.
+            If the name ends otherwise; also as raised by `to_mesh`.
 
         See Also
         --------
@@ -355,7 +355,7 @@ class RadiositySolution(Tabular):
         if not isinstance(other, RadiositySolution):
             return NotImplemented
         pairs = ((getattr(self, field.name), getattr(other, field.name)) for field in fields(self))
-        return all(_same(a, b) for a, b in pairs)
+        return all(same(a, b) if isinstance(a, np.ndarray) else a == b for a, b in pairs)
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -406,9 +406,3 @@ def relative_error(standard_error: Floats, values: Floats, areas: Floats) -> flo
     """Return the root mean square, by area, of errors over that of the values."""
     whole = float((areas[:, None] * values**2).sum())
     return float(np.sqrt((areas[:, None] * standard_error**2).sum() / whole)) if whole > 0 else 0.0
-
-
-def _same(a: Any, b: Any) -> bool:
-    if not isinstance(a, np.ndarray):
-        return bool(a == b)
-    return np.array_equal(a, b, equal_nan=a.dtype.kind == "f")

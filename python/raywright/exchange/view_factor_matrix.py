@@ -138,7 +138,7 @@ class ViewFactors(Tabular):
         Parameters
         ----------
         x : (N,) or (N, K) array
-            Radiosities, a row each.
+            Radiosities, one per row of the matrix.
 
         Returns
         -------
@@ -174,7 +174,7 @@ class ViewFactors(Tabular):
         Parameters
         ----------
         x : (N,) or (N, K) array
-            Radiosities, a row each.
+            Radiosities, one per row of the matrix.
 
         Returns
         -------
@@ -226,7 +226,7 @@ class ViewFactors(Tabular):
         Parameters
         ----------
         x : (N,) or (N, K) array
-            Powers, a row each.
+            Powers, one per row of the matrix.
 
         Returns
         -------

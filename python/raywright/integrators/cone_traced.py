@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, color, number
+from ..arrays import Triple, color
 from . import counts
 from .base import CoreIntegrator
 
 
 @dataclass(frozen=True, init=False)
 class ConeTraced(CoreIntegrator):
-    """Cone tracing (Amanatides 1984): one cone a pixel in place of samples.
+    """Cone tracing (Amanatides 1984): one cone per pixel in place of samples.
 
     A cone has the solid angle of its pixel. Hits are weighted by the share of the cone that they cover, front
     to back. Soft shadows follow from the unoccluded share of the cone to a lamp: exact for a sphere behind
@@ -64,9 +64,6 @@ class ConeTraced(CoreIntegrator):
     ambient: Triple
 
     def __init__(self, max_depth: int = 8, contribution: float = 1 / 512, ambient: ArrayLike = 0.0) -> None:
-        share = number("contribution", contribution)
-        if not 0 <= share < 1:
-            raise ValueError(f"contribution must be at least 0 and below 1, got {contribution!r}")
         object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
-        object.__setattr__(self, "contribution", share)
+        object.__setattr__(self, "contribution", counts.contribution(contribution))
         object.__setattr__(self, "ambient", color("ambient", ambient))

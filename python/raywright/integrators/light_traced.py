@@ -33,7 +33,7 @@ class LightTraced(CoreIntegrator):
         If a number is negative. When rendering: with `adaptive=True`, or if no path can start at a light of
         the scene (infinite emitters, emitters that move in instances, media that glow).
     TypeError
-        If it is not an integer.
+        If an argument is not an integer.
 
     See Also
     --------

@@ -14,7 +14,7 @@ from .base import CoreIntegrator
 
 @dataclass(frozen=True)
 class Radiosity(CoreIntegrator):
-    """Display of a radiosity solution from any camera: one ray a sample, without further scattering.
+    """Display of a radiosity solution from any camera: one ray per sample, without further scattering.
 
     A hit shows its emission and the reflected irradiance of its patch. Textures are those of the scene, not
     the means of patches; rays that miss see the environment.

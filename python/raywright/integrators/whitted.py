@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..arrays import Triple, color, number
+from ..arrays import Triple, color
 from . import counts
 from .base import CoreIntegrator
 
@@ -64,10 +64,7 @@ class Whitted(CoreIntegrator):
         ambient: ArrayLike = 0.0,
         light_samples: int = 1,
     ) -> None:
-        share = number("contribution", contribution)
-        if not 0 <= share < 1:
-            raise ValueError(f"contribution must be at least 0 and below 1, got {contribution!r}")
         object.__setattr__(self, "max_depth", counts.depth("max_depth", max_depth))
-        object.__setattr__(self, "contribution", share)
+        object.__setattr__(self, "contribution", counts.contribution(contribution))
         object.__setattr__(self, "ambient", color("ambient", ambient))
         object.__setattr__(self, "light_samples", counts.samples("light_samples", light_samples))

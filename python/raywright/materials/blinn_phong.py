@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
-from ..textures.texture import Number, Texture, Value, scalar, value
-from .material import Material, shares
+from ..textures.texture import Number, Texture, Value
+from .material import Material, highlights
 
 
 @dataclass(frozen=True, init=False)
@@ -60,10 +60,4 @@ class BlinnPhong(Material):
         exponent: float | Texture = 32.0,
         ambient: ArrayLike | Texture | None = None,
     ) -> None:
-        matt, shiny = shares(diffuse, specular)
-        self._set(
-            diffuse=matt,
-            specular=shiny,
-            exponent=scalar("exponent", exponent),
-            ambient=matt if ambient is None else value("ambient", ambient),
-        )
+        self._set(**highlights(diffuse, specular, exponent, ambient))

@@ -177,7 +177,7 @@ def metal_index(metal: str) -> MetalIndex:
     ValueError
         If the name is not known.
     TypeError
-        If it is no name.
+        If it is not a name.
 
     See Also
     --------

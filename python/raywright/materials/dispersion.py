@@ -48,7 +48,7 @@ class Dispersion(ABC):
             If a wavelength is not greater than 0, or if the formula does not hold there: it gives no index
             above 0.
         TypeError
-            If wavelengths are no real numbers.
+            If wavelengths are not real numbers.
 
         See Also
         --------
@@ -224,7 +224,7 @@ def one_index(given: Any, why: str) -> float:
     ValueError
         If it is not finite and above 0.
     TypeError
-        If it is no number; for a dispersive one, with the reason.
+        If an argument is not a number; for a dispersive one, with the reason.
     """
     if isinstance(given, Dispersion):
         kind = type(given).__name__

@@ -43,7 +43,7 @@ def rough(roughness: Any, alpha: Any, default: float = 0.0, pair: bool = True) -
     ValueError
         If both are given, or a number is out of range.
     TypeError
-        If something is no number and no texture.
+        If something is neither a number nor a texture.
     """
     if roughness is not None and alpha is not None:
         raise ValueError("only one of roughness and alpha can be given: alpha is the square of roughness")
@@ -72,7 +72,7 @@ def facets(distribution: str, multiple_scattering: bool) -> dict[str, Any]:
     ValueError
         If there is no such distribution.
     TypeError
-        If `multiple_scattering` is no bool.
+        If `multiple_scattering` is not a bool.
     """
     choice("distribution", distribution, DISTRIBUTIONS)
     if not isinstance(multiple_scattering, bool):
@@ -88,7 +88,7 @@ def number_from(name: str, given: float, least: float) -> float:
     ValueError
         If it is.
     TypeError
-        If it is not a number.
+        If `given` is not a number.
     """
     result = number(name, given)
     if result < least:
@@ -96,15 +96,15 @@ def number_from(name: str, given: float, least: float) -> float:
     return result
 
 
-def shares(diffuse: Any, specular: Any) -> tuple[Value, Value]:
-    """Return the shares of light that two parts reflect, which are at most 1 together where both are numbers.
+def highlights(diffuse: Any, specular: Any, exponent: Any, ambient: Any) -> dict[str, Value | Number]:
+    """Return the parameters of a surface that is partly matt and partly shiny, checked.
 
     Raises
     ------
     ValueError
-        If one is outside [0, 1], or they are too much together.
+        If a number is out of range, or the two shares add up to more than 1.
     TypeError
-        If one is no number and no texture.
+        If one is neither a number nor a texture.
     """
     matt, shiny = value("diffuse", diffuse, most=1.0), value("specular", specular, most=1.0)
     if not isinstance(matt, Texture) and not isinstance(shiny, Texture):
@@ -112,4 +112,9 @@ def shares(diffuse: Any, specular: Any) -> tuple[Value, Value]:
         # Sums of shares such as 0.9 and 0.1 may be rounded up.
         if most > 1 + 1e-12:
             raise ValueError(f"diffuse and specular must add up to at most 1, got {most:g}")
-    return matt, shiny
+    return {
+        "diffuse": matt,
+        "specular": shiny,
+        "exponent": scalar("exponent", exponent),
+        "ambient": matt if ambient is None else value("ambient", ambient),
+    }

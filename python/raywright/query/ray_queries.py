@@ -112,8 +112,7 @@ class RayQueries(Compilable):
             if found is not None:
                 return Hits._on_meshes(*found, core)
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
-        core = core or self._compiled()
-        what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
+        core, what = self._counting(shapes, cull)
         if fields is not None or isinstance(out, Mapping):
             return _some_of(core, rays, what, fields, out)
         if out is None:
@@ -172,8 +171,7 @@ class RayQueries(Compilable):
             if found is not None:
                 return found
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
-        core = core or self._compiled()
-        what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
+        core, what = self._counting(shapes, cull)
         if out is not None:
             written_to("out", out, rays[4], (np.dtype(np.bool_),))
         return core.occluded(rays, out, what)
@@ -225,9 +223,13 @@ class RayQueries(Compilable):
         ([2, 0], [4.0, 6.0])
         """
         rays = asked(ray_arguments(origins, directions, t_min, t_max, threads, time), mask)
-        core = self._core or self._compiled()
-        what = None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
+        core, what = self._counting(shapes, cull)
         return AllHits(*core.intersect_all(rays, what), rays[4], core, known_by(core, rays))
+
+    def _counting(self, shapes: ShapeMask | None, cull: Cull | None) -> tuple[CompiledScene, Counted]:
+        """Return the compiled scene, and which of its hits count."""
+        core = self._core or self._compiled()
+        return core, None if shapes is None and cull is None else counted(shapes, cull, core.shapes)
 
     def count_hits(
         self,

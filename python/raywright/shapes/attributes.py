@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import frozen, real_array
+from ..arrays import frozen, real_array, same
 
 Attributes: TypeAlias = Mapping[str, NDArray[Any]]
 _NONE: Attributes = MappingProxyType({})
@@ -23,7 +23,7 @@ def attributes(name: str, given: Mapping[str, ArrayLike] | None, count: int) -> 
     ValueError
         If an array has another length.
     TypeError
-        If `given` is no mapping, a name is no str, or an array does not hold real numbers or bool.
+        If `given` is not a mapping, a name is not a str, or an array does not hold real numbers or bool.
     """
     if not given:
         return _NONE
@@ -50,13 +50,13 @@ def cell_numbers(name: str, given: ArrayLike, count: int) -> NDArray[np.int64]:
     ValueError
         If there are not so many, or one is negative.
     TypeError
-        If they are no integers.
+        If `given` is not an integer.
     """
     array = np.asarray(given)
     if array.dtype.kind not in "iu":
         raise TypeError(f"{name} must be integers, got dtype {array.dtype}")
     if array.shape != (count,):
-        raise ValueError(f"{name} must have shape ({count},), one number a face, got {array.shape}")
+        raise ValueError(f"{name} must have shape ({count},), one number per face, got {array.shape}")
     if count and int(array.min()) < 0:
         raise ValueError(f"{name} must be at least 0, got {array.min()} of face {int(array.argmin())}")
     return frozen(array.astype(np.int64, copy=False))
@@ -64,7 +64,4 @@ def cell_numbers(name: str, given: ArrayLike, count: int) -> NDArray[np.int64]:
 
 def same_attributes(a: Attributes, b: Attributes) -> bool:
     """Return whether two have the same names and values; NaN is equal to NaN."""
-    return a.keys() == b.keys() and all(
-        a[key].dtype == b[key].dtype and np.array_equal(a[key], b[key], equal_nan=a[key].dtype.kind == "f")
-        for key in a
-    )
+    return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
-from ..arrays import frozen, label, last_axis, positive, rows, triangles
+from ..arrays import frozen, label, last_axis, positive, rows, same, triangles
 from ..descriptions import as_kind, changed
 from ..lights.emission import EmissionLike, Emitted
 from ..lights.emission import emission as checked_emission
@@ -35,19 +35,19 @@ class Mesh:
         Corners. float32 and float64 are kept as they are, other real types become float64. NaN and infinity
         are allowed: faces that use them are left out, with a warning, when the scene is compiled.
     faces : (F, 3) integer array
-        Indices of three vertices a face; kept as uint32. Seen from the side that the normal points to, they
+        Indices of three vertices per face; kept as uint32. Seen from the side that the normal points to, they
         run anticlockwise.
     normals : (V, 3) array, optional
-        Shading normals, one a vertex.
+        Shading normals, one per vertex.
     uv : (V, 2) array, optional
-        Texture coordinates, one pair a vertex; (0, 0) is the lower left.
+        Texture coordinates, one pair per vertex; (0, 0) is the lower left.
     material : Material, optional
         Material of the surface; ``Diffuse()`` if not given.
     emission : float, 3 floats, Texture or Emission, optional
         Radiance in W·sr⁻¹·m⁻² that leaves the side of the geometric normal: one number, or red, green and
         blue. None, the default, for a mesh that does not shine.
     colors : (V, 3) array, optional
-        Linear red, green and blue, one color a vertex, each between 0 and 1; the texture `VertexColors`
+        Linear red, green and blue, one color per vertex, each between 0 and 1; the texture `VertexColors`
         shows them.
     name : str, optional
         Name that `Hits.names` returns.
@@ -161,7 +161,7 @@ class Mesh:
         Raises
         ------
         TypeError
-            If `source` is nothing that meshes are made of.
+            If `source` is of a type that is not listed.
         ValueError
             If `source` cannot be read, has no mesh in it, or `tolerance` is not greater than 0.
         FileNotFoundError
@@ -278,7 +278,8 @@ class Mesh:
         ----------
         path : path
             Its suffix sets the format. ``.ply`` holds everything but the material: float64 as it is,
-            attributes as properties by name (those with more than one number a row as ``name_0``, ``name_1``,
+            attributes as properties by name (those with more than one number per row as ``name_0``,
+            ``name_1``,
             ...), and `cells` as the face property "cell". ``.vtp`` and ``.vtk`` hold the data of
             `to_pyvista`. ``.glb``, ``.obj``, ``.off`` and ``.stl`` hold no attributes.
 
@@ -397,15 +398,15 @@ class Mesh:
         if not isinstance(other, Mesh):
             return NotImplemented
         return (
-            _same(self.vertices, other.vertices)
-            and _same(self.faces, other.faces)
-            and _same(self.normals, other.normals)
-            and _same(self.uv, other.uv)
-            and _same(self.colors, other.colors)
+            same(self.vertices, other.vertices)
+            and same(self.faces, other.faces)
+            and same(self.normals, other.normals)
+            and same(self.uv, other.uv)
+            and same(self.colors, other.colors)
             and self.material == other.material
             and self.emission == other.emission
             and self.name == other.name
-            and _same(self.cells, other.cells)
+            and same(self.cells, other.cells)
             and same_attributes(self.vertex_attributes, other.vertex_attributes)
             and same_attributes(self.face_attributes, other.face_attributes)
         )
@@ -454,7 +455,7 @@ def _unpickled(kind: type[Mesh], parts: tuple[Any, ...]) -> Mesh:
 
 
 def face_count(shape: object) -> int:
-    """Return how many faces a shape has: none if it is no mesh."""
+    """Return how many faces a shape has: none if it is not a mesh."""
     return len(shape.faces) if isinstance(shape, Mesh) else 0
 
 
@@ -479,9 +480,3 @@ def noisy(mesh: Mesh, noise: float) -> Mesh:
 def has_noise(shape: object) -> bool:
     """Return whether rounding may have parted corners of a shape by more than its digits tell."""
     return isinstance(shape, Mesh) and shape._noise > 0
-
-
-def _same(a: NDArray[Any] | None, b: NDArray[Any] | None) -> bool:
-    if a is None or b is None:
-        return a is b
-    return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")

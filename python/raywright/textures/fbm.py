@@ -8,9 +8,9 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from ..arrays import SeedLike, Triple, integer, number, seed_number
-from .noise import SEEDS
-from .texture import Texture, Value, either, scalar, value
-from .transform import ObjectTransform, Transform, placed
+from .noise import SEEDS, blend_of
+from .texture import Texture, Value, either, scalar
+from .transform import Transform
 
 
 def octaves_of(octaves: int, lacunarity: float, gain: float, seed: SeedLike) -> dict[str, Any]:
@@ -86,12 +86,7 @@ class FBm(Texture):
         gain: float = 0.5,
         seed: SeedLike = 0,
     ) -> None:
-        self._set(
-            a=value("a", a, -float("inf")),
-            b=value("b", b, -float("inf")),
-            transform=placed(transform, ObjectTransform),
-            **octaves_of(octaves, lacunarity, gain, seed),
-        )
+        self._set(**blend_of(a, b, transform), **octaves_of(octaves, lacunarity, gain, seed))
 
     @property
     def range(self) -> tuple[Triple, Triple]:

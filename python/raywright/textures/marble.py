@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 
 from ..arrays import SeedLike, Triple, number
 from .fbm import octaves_of
-from .texture import Texture, Value, either, value
-from .transform import ObjectTransform, Transform, placed
+from .noise import blend_of
+from .texture import Texture, Value, either
+from .transform import Transform
 
 
 @dataclass(frozen=True, init=False)
@@ -69,9 +70,7 @@ class Marble(Texture):
         seed: SeedLike = 0,
     ) -> None:
         self._set(
-            a=value("a", a, -float("inf")),
-            b=value("b", b, -float("inf")),
-            transform=placed(transform, ObjectTransform),
+            **blend_of(a, b, transform),
             distortion=number("distortion", distortion),
             **octaves_of(octaves, lacunarity, gain, seed),
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from numpy.typing import ArrayLike
 
@@ -11,6 +12,15 @@ from .texture import Texture, Value, either, value
 from .transform import ObjectTransform, Transform, placed
 
 SEEDS = 2**32 - 1
+
+
+def blend_of(a: Any, b: Any, transform: Any) -> dict[str, Any]:
+    """Return two values between which a solid texture varies, and its transform, checked."""
+    return {
+        "a": value("a", a, -float("inf")),
+        "b": value("b", b, -float("inf")),
+        "transform": placed(transform, ObjectTransform),
+    }
 
 
 @dataclass(frozen=True, init=False)
@@ -58,12 +68,7 @@ class Noise(Texture):
         transform: Transform | float | None = None,
         seed: SeedLike = 0,
     ) -> None:
-        self._set(
-            a=value("a", a, -float("inf")),
-            b=value("b", b, -float("inf")),
-            transform=placed(transform, ObjectTransform),
-            seed=seed_number(seed, SEEDS),
-        )
+        self._set(**blend_of(a, b, transform), seed=seed_number(seed, SEEDS))
 
     @property
     def range(self) -> tuple[Triple, Triple]:

@@ -32,7 +32,8 @@ class Spectrum(Texture):
     Raises
     ------
     ValueError
-        If they are not as many, wavelengths do not rise, or something is not finite or negative.
+        If there are not as many values as wavelengths, wavelengths do not rise, or a number is negative or
+        not finite.
     TypeError
         If an argument is not a number.
 
@@ -78,12 +79,12 @@ class Spectrum(Texture):
         return (low, low, low), (high, high, high)
 
     def at(self, wavelengths: ArrayLike) -> Any:
-        """Return the values at wavelengths, nm, of any shape.
+        """Return the values of the spectrum at wavelengths.
 
         Parameters
         ----------
         wavelengths : array_like
-            In nm.
+            Wavelengths in nm, in an array of any shape.
 
         Returns
         -------
@@ -92,7 +93,7 @@ class Spectrum(Texture):
         Raises
         ------
         TypeError
-            If wavelengths are no real numbers.
+            If wavelengths are not real numbers.
 
         Examples
         --------
@@ -144,6 +145,6 @@ def color_or_spectrum(name: str, value: ArrayLike | Spectrum) -> Triple | Spectr
     ValueError
         If a number is negative or not finite, or there are neither 1 nor 3 of them.
     TypeError
-        If they are not numbers.
+        If `value` is not a number.
     """
     return value if isinstance(value, Spectrum) else color(name, value)

@@ -54,7 +54,7 @@ def value(
         If a number, or the range of a texture, is not finite or not allowed, or there are neither 1 nor 3 of
         them.
     TypeError
-        If they are not numbers.
+        If `given` is not a number.
     """
     if isinstance(given, Texture):
         low, high = given.range

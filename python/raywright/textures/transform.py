@@ -40,7 +40,7 @@ class UvTransform:
     ValueError
         If a number is not finite, or there are too few or too many of them.
     TypeError
-        If they are not numbers.
+        If an argument is not a number.
 
     See Also
     --------
@@ -103,7 +103,7 @@ class ObjectTransform:
         If a number is not finite, there are too few or too many of them, or the last of four rows is not
         (0, 0, 0, 1).
     TypeError
-        If they are not numbers.
+        If an argument is not a number.
 
     See Also
     --------

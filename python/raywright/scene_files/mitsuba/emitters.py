@@ -1,4 +1,4 @@
-"""Emitters that are no surfaces: lights within a scene, and environments."""
+"""Emitters that are not surfaces: lights within a scene, and environments."""
 
 from __future__ import annotations
 
@@ -74,14 +74,17 @@ def emitter(plugin: Plugin) -> Light | Environment:
     return result
 
 
+def _in_world(plugin: Plugin, name: str, column: int) -> NDArray[np.float64]:
+    """Return a vector that is given by name, or as a column of the plugin's transformation."""
+    if not plugin.has(name):
+        return plugin.to_world()[:3, column]
+    if plugin.has("to_world"):
+        plugin.fail(f"either {name} or to_world must be given, got both")
+    return plugin.vector(name, (0.0, 0.0, 0.0))
+
+
 def _point(plugin: Plugin) -> PointLight:
-    if plugin.has("position"):
-        if plugin.has("to_world"):
-            plugin.fail("either position or to_world must be given, got both")
-        position = plugin.vector("position", (0.0, 0.0, 0.0))
-    else:
-        position = plugin.to_world()[:3, 3]
-    return PointLight(position, shade(plugin, "intensity", 1.0, emits=True))
+    return PointLight(_in_world(plugin, "position", 3), shade(plugin, "intensity", 1.0, emits=True))
 
 
 def _spot(plugin: Plugin) -> SpotLight | ProjectorLight:
@@ -152,13 +155,7 @@ def _thrown(image: NDArray[Any], matrix: Matrix, tall: float, intensity: Triple)
 
 
 def _directional(plugin: Plugin) -> DirectionalLight:
-    if plugin.has("direction"):
-        if plugin.has("to_world"):
-            plugin.fail("either direction or to_world must be given, got both")
-        direction = plugin.vector("direction", (0.0, 0.0, 1.0))
-    else:
-        direction = plugin.to_world()[:3, 2]
-    return DirectionalLight(direction, shade(plugin, "irradiance", 1.0, emits=True))
+    return DirectionalLight(_in_world(plugin, "direction", 2), shade(plugin, "irradiance", 1.0, emits=True))
 
 
 def _constant(plugin: Plugin) -> ConstantEnvironment:
