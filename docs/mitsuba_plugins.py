@@ -30,7 +30,7 @@ NEARLY = {
     "linearcurve": "a mesh of 48 sides, within 0.22 % of the radius; fewer sides beyond 4 million triangles",
     "bsplinecurve": "likewise, in straight pieces within 0.1 % of the radius; the ends are open",
     "sdfgrid": "a mesh of a third of its cells, with corners on the surface",
-    "heightfield": "Mitsuba 0.6's: a mesh of four triangles a patch, with the points of the picture",
+    "heightfield": "Mitsuba 0.6's: a mesh of four triangles per patch, with the points of the picture",
     "mesh_attribute": "PLY files only: vertices or faces, one attribute a mesh, between 0 and 1",
     "volume": "grids on meshes, quartered until edges are half a cell or there are 4 million triangles",
     "bumpmap": "slopes are means over a thousandth of the coordinates",

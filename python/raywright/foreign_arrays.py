@@ -48,7 +48,7 @@ def as_array(name: str, value: ArrayLike) -> NDArray[Any]:
 
 
 def describe(value: object, array: NDArray[Any], short: bool = False) -> str:
-    """Describe a value that is no number; of objects, the first that is no number, with a remedy."""
+    """Describe a value that is not a number; of objects, the first that is not a number, with a remedy."""
     if not array.ndim and not isinstance(value, np.ndarray):
         return f"{_short(value)}{cure(value)}"
     is_named = not (short and isinstance(value, np.ndarray))
@@ -224,7 +224,7 @@ def _of_nullable(value: Any, array: NDArray[Any]) -> NDArray[Any]:
 
 
 def _first_other(array: NDArray[Any]) -> tuple[int, ...] | None:
-    """Return where the first entry is that is no number."""
+    """Return where the first entry is that is not a number."""
     others = (i for i, entry in np.ndenumerate(array) if not isinstance(entry, float | int | np.number))
     return next(others, None)
 

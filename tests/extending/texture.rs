@@ -21,7 +21,7 @@ impl Texture for Gradient {
         [self.bottom.at_most(self.top), self.bottom.at_least(self.top)]
     }
 
-    // Emitters are chosen by it.
+    // The power of an emitter is computed from it.
     fn mean(&self) -> Rgb {
         (self.bottom + self.top) * 0.5
     }

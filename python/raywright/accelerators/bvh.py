@@ -86,7 +86,7 @@ class BVH:
         The wide traversals keep triangles and other shapes in separate trees, all others in one.
     orders : {6, 8}, optional
         Number of orders of ``"threaded"``: one for each half of each axis, or one for each octant; 8 if not
-        given. Each takes 8 bytes a node.
+        given. Each takes 8 bytes per node.
     bounds : {"box", "oriented", "slabs"}
         Bounds of nodes besides their boxes, for ``"stack"``: none; oriented boxes, if these have less surface
         (Gottschalk, Lin and Manocha 1996, "OBBTree"); or slabs along ten diagonals (Kay and Kajiya 1986).

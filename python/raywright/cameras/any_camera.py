@@ -42,7 +42,7 @@ class AnyCamera(Pose):
     ValueError
         If a number is out of range or not finite, or the shutter closes before it opens.
     TypeError
-        If an argument is not a number, or `end_pose` is no Pose.
+        If an argument is not a number, or `end_pose` is not a Pose.
 
     See Also
     --------

@@ -19,9 +19,9 @@ from ..scene.scene import Scene
 from ..shapes.mesh import Mesh
 from .material_table import LeftError, Looks, constant
 
-# 112 bytes a face, by primitive number: a corner and two edges in the winding of the mesh. `material` is that
-# of the front, followed by that of the back. `light` is its light, or NO. `has` is 1 for normals plus 2 for
-# texture coordinates, which are u_a, u_b, u_c and v.
+# 112 bytes per face, by primitive number: a corner and two edges in the winding of the mesh. `material` is
+# that of the front, followed by that of the back. `light` is its light, or NO. `has` is 1 for normals plus 2
+# for texture coordinates, which are u_a, u_b, u_c and v.
 FACE = np.dtype(
     [
         ("corner", "<f4", 3),
@@ -40,7 +40,7 @@ FACE = np.dtype(
         ("reserved", "<f4"),
     ]
 )
-# 48 bytes a light. `kind` is 0 for an emitting face, 1 for a point, 2 for a direction. `radiance` is that,
+# 48 bytes per light. `kind` is 0 for an emitting face, 1 for a point, 2 for a direction. `radiance` is that,
 # the intensity (in box units) or the irradiance. `share` is the probability to draw this light rather than
 # another, without the sky; `until` is the cumulative one.
 LIGHT = np.dtype(

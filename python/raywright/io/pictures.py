@@ -50,7 +50,7 @@ def check_writable(
     FileNotFoundError, IsADirectoryError, NotADirectoryError, PermissionError, OSError
         If the folder is missing, the path is a folder, or the file cannot be written.
     TypeError
-        If `path` is no path.
+        If `path` is not a path.
 
     See Also
     --------
@@ -107,7 +107,7 @@ def read(path: str | PathLike[str]) -> NDArray[Any]:
     FileNotFoundError
         If the file is missing.
     ValueError
-        If it is no picture that can be read.
+        If it is not a picture that can be read.
     """
     path = Path(path)
     if not path.exists():
@@ -161,7 +161,7 @@ def decode(source: Path | bytes, formats: tuple[str, ...] | None = None) -> NDAr
         raise ValueError(_TOO_MANY.format(Image.MAX_IMAGE_PIXELS)) from None
     except UnidentifiedImageError:
         kinds = "Pillow knows" if formats is None else f"is {', '.join(formats)}"
-        raise ValueError(f"it is no picture that {kinds}") from None
+        raise ValueError(f"it is not a picture that {kinds}") from None
     with opened:
         return pixels_of(opened)
 

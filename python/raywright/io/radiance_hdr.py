@@ -1,4 +1,4 @@
-"""Radiance's picture files: .hdr, of four bytes a pixel, three mantissas and an exponent they share."""
+"""Radiance's picture files: .hdr, of four bytes per pixel, three mantissas and an exponent they share."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
     Raises
     ------
     ValueError
-        If it is no such file, is cut short, or has colors other than red, green and blue.
+        If it is not a file of this kind, is cut short, or has colors other than red, green and blue.
     """
     data = path.read_bytes()
     header = re.match(rb".*?\n[ \t\r]*\n", data[: 2**16], re.DOTALL)

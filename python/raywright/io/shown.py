@@ -48,7 +48,7 @@ def srgb(
         return _bytes(_transfer(toned(rgb, exposure, tone)))
     cover = np.clip(np.nan_to_num(np.asarray(alpha, np.float64), nan=0.0), 0.0, 1.0)[..., np.newaxis]
     whole = np.divide(rgb, cover, out=np.zeros(rgb.shape, np.float64), where=cover > 0)
-    # Alpha is no light and is stored linearly.
+    # Alpha is not light and is stored linearly.
     return _bytes(np.concatenate([_transfer(toned(whole, exposure, tone)), cover], axis=-1))
 
 

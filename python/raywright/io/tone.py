@@ -31,7 +31,7 @@ def check_tone(exposure: float, tone: str) -> float:
     ValueError
         If it is out of -100..100, or the tone is not known.
     TypeError
-        If it is not a number.
+        If an argument is not a number.
     """
     exposure = number("exposure", exposure)
     if not abs(exposure) <= _MOST_STOPS:

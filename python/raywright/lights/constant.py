@@ -25,7 +25,7 @@ class ConstantEnvironment(Environment):
     ValueError
         If a number is negative or not finite, or there are neither 1 nor 3 of them.
     TypeError
-        If it is not a number.
+        If `radiance` is not a number.
 
     See Also
     --------

@@ -27,7 +27,7 @@ class DirectionalLight(Light):
     ValueError
         If a number is negative or not finite, or the direction has no length.
     TypeError
-        If they are not numbers.
+        If an argument is not a number.
 
     See Also
     --------

@@ -39,7 +39,7 @@ class Emission:
     ValueError
         If a number is negative or not finite, there are neither 1 nor 3 of them, or there is no such side.
     TypeError
-        If it is not a number, or `both_sides` is no bool.
+        If an argument is not a number, or `both_sides` is not a bool.
 
     See Also
     --------

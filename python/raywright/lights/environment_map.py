@@ -35,8 +35,8 @@ class EnvironmentMap(Pictured, Environment):
     Raises
     ------
     ValueError
-        If the image is empty, of another shape, negative or not finite; if `to_world` is no rotation; or if
-        `scale` is negative or not finite.
+        If the image is empty, of another shape, negative or not finite; if `to_world` is not a rotation; or
+        if `scale` is negative or not finite.
     TypeError
         If an argument does not hold numbers.
     FileNotFoundError

@@ -26,8 +26,8 @@ def texels(name: str, value: ArrayLike | str | PathLike[str]) -> Texels:
     Raises
     ------
     ValueError
-        If it is empty, has another shape, or holds numbers that are not finite, or is no file and negative by
-        more than a hundredth of all its light (the error says where).
+        If it is empty, has another shape, or holds numbers that are not finite, or is not a file and negative
+        by more than a hundredth of all its light (the error says where).
     TypeError
         If it does not hold real numbers.
     FileNotFoundError

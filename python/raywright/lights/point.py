@@ -27,7 +27,7 @@ class PointLight(Light):
     ValueError
         If a number is negative or not finite, or there are too few or too many of them.
     TypeError
-        If they are not numbers.
+        If an argument is not a number.
 
     See Also
     --------

@@ -63,7 +63,7 @@ def sun_directions(
     Raises
     ------
     ValueError
-        If `north` is along `up`, and as `sun_positions` does.
+        If `north` is along `up`; also as raised by `sun_positions`.
     """
     zenith, ahead = np.array(up), np.array(north)
     zenith /= np.linalg.norm(zenith)

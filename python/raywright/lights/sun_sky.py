@@ -166,10 +166,10 @@ class SunSky(Environment):
         Raises
         ------
         ValueError
-            If a time has no zone or is not one, the latitude is not between -90 and 90, or `north` is along
-            `up`; and as the class does.
+            If a time has no zone or cannot be read, the latitude is not between -90 and 90, or `north` is
+            along `up`; also as raised by `SunSky`.
         TypeError
-            If `when` is something else; and as the class does.
+            If `when` is something else; also as raised by `SunSky`.
 
         See Also
         --------

@@ -24,10 +24,10 @@ def one_or_many(name: str, value: Time | Times) -> datetime | list[datetime]:
     Raises
     ------
     ValueError
-        If a time has no zone, is none at all, is a text that is no ISO 8601, or is outside of the years 1 to
+        If a time has no zone, is none at all, is a text that is not ISO 8601, or is outside of the years 1 to
         9999; or if an array has more than one dimension. An error about several names the one.
     TypeError
-        If it is no time.
+        If it is not a time.
     """
     if isinstance(value, np.ndarray):
         if value.ndim > 1:

@@ -115,7 +115,7 @@ def topology(scene: SceneLike) -> Topology:
     Raises
     ------
     ValueError
-        If something in the scene is no mesh or moves; the error names the shape.
+        If something in the scene is not a mesh or moves; the error names the shape.
 
     See Also
     --------

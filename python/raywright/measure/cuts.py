@@ -119,8 +119,8 @@ def cross_section(
     Raises
     ------
     ValueError
-        If something in the scene is no mesh or moves, a number is not finite, the normal has no length, the
-        planes are no (3,) or (N, 3) arrays, or `rule` is no such rule.
+        If something in the scene is not a mesh or moves, a number is not finite, the normal has no length,
+        the planes are not (3,) or (N, 3) arrays, or `rule` is not a known rule.
     TypeError
         If an argument is not a number.
 

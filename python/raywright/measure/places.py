@@ -121,7 +121,7 @@ def middles(scene: Scene) -> ClosestPoints:
     Raises
     ------
     ValueError
-        If a shape is no mesh.
+        If a shape is not a mesh.
     """
     for i, shape in enumerate(scene.shapes):
         if not isinstance(shape, Mesh):

@@ -85,7 +85,7 @@ def plot(
         raise TypeError(f"points must be positions, got {str(points)!r}: give a file to draw to as ax=")
     places = None if points is None else _places(points, shown.shape)
     if places is None and shown.shape not in ((len(faces),), (len(vertices),)):
-        told = f"({len(faces)},), one a face, or ({len(vertices)},), one a vertex"
+        told = f"({len(faces)},), one per face, or ({len(vertices)},), one per vertex"
         raise ValueError(f"values must have shape {told}, or points be given, got {shown.shape}")
     corners = vertices[faces]
     is_of_vertices = shown.shape == (len(vertices),) and (
@@ -196,7 +196,7 @@ def _places(points: SurfacePoints | ArrayLike, shape: tuple[int, ...]) -> Floats
     try:
         return np.broadcast_to(np.asarray(given, np.float64), (*shape, 3))
     except ValueError:
-        raise ValueError(f"values must have shape {given.shape[:-1]}, one a point, got {shape}") from None
+        raise ValueError(f"values must have shape {given.shape[:-1]}, one per point, got {shape}") from None
 
 
 def _means(corners: Floats) -> Floats:

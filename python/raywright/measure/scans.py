@@ -229,7 +229,7 @@ def lidar(
     ValueError
         If a number is out of its range or not finite, or `returns` is none of these.
     TypeError
-        If `scanner` is no scanner, or something else is of the wrong type.
+        If `scanner` is not a scanner, or something else is of the wrong type.
 
     See Also
     --------

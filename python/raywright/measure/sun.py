@@ -166,7 +166,7 @@ def solar_exposure(
     ------
     ValueError
         If neither the sun nor times and place are given, or both; if shapes do not fit, a number is not
-        finite, a vector has no length, or normals are missing; and as `sun_directions` does.
+        finite, a vector has no length, or normals are missing; also as raised by `sun_directions`.
     TypeError
         If an argument has the wrong type.
 

@@ -25,7 +25,7 @@ def triangles(scene: Scene, tolerance: float | None) -> tuple[Floats, NDArray[np
     Raises
     ------
     ValueError
-        If something is no mesh, or moves; the error names the shape.
+        If something is not a mesh, or moves; the error names the shape.
     """
     distances: list[float] = []
     corners, faces, count = [np.zeros((0, 3))], [np.zeros((0, 3), np.uint32)], 0
@@ -46,7 +46,7 @@ def meshes_in(shape: AnyShape, name: str) -> Iterator[Mesh]:
     Raises
     ------
     ValueError
-        If something in it is no mesh, or moves.
+        If something in it is not a mesh, or moves.
     """
     if isinstance(shape, Mesh):
         yield shape

@@ -63,8 +63,8 @@ def thickness(
     ------
     ValueError
         If shapes do not broadcast, a number is not finite, a vector has no length, normals are missing, or
-        `method` is no such method; without points, if something in the scene is no mesh; for "sphere", if
-        something in it has no closest points.
+        `method` is not a known method; without points, if something in the scene is not a mesh; for "sphere",
+        if something in it has no closest points.
     TypeError
         If an argument has the wrong type.
 

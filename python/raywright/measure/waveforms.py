@@ -21,7 +21,7 @@ _TOGETHER = 1 << 22
 def peaks(t: Floats, width: Floats, resolution: float) -> NDArray[np.int64]:
     """Return the peak of its beam's waveform that each ray belongs to.
 
-    The waveform is a sum of normal distributions, one a ray, as wide as the pulse and the part of the beam
+    The waveform is a sum of normal distributions, one per ray, as wide as the pulse and the part of the beam
     that the ray stands for. Rays belong together as far as no dip lies between them.
 
     Parameters

@@ -96,7 +96,7 @@ def read_vol(name: Path) -> tuple[NDArray[np.float32], Bounds]:
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is no such file, is of another version, or is cut short.
+        If it is not a file of this kind, is of another version, or is cut short.
     """
     data = name.read_bytes()
     if len(data) < _VOL.size or data[:3] != b"VOL":

@@ -69,7 +69,7 @@ class GridMedium(Medium):
     Raises
     ------
     ValueError
-        If something is negative, not finite, or of another shape, a transform has no inverse, or an albedo
+        If an array is negative, not finite, or of another shape, a transform has no inverse, or an albedo
         exceeds 1 or does not come with an extinction alone.
     TypeError
         If an argument has another type.
@@ -176,7 +176,7 @@ class GridMedium(Medium):
         ImportError
             If it is compressed by Blosc, and the package numcodecs is not installed.
         ValueError
-            If it cannot be read, and why; and as `GridMedium` does.
+            If it cannot be read, and why; also as raised by `GridMedium`.
         TypeError
             As `GridMedium` does.
 

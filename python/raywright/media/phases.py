@@ -57,7 +57,7 @@ class HenyeyGreenstein:
     ValueError
         If it is not between -1 and 1.
     TypeError
-        If it is not a number.
+        If `g` is not a number.
 
     See Also
     --------

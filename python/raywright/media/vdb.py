@@ -47,7 +47,7 @@ def read_vdb(path: Path, names: tuple[str, ...]) -> tuple[dict[str, SparseGrid],
     ImportError
         If it is compressed by Blosc, and the package numcodecs is not installed.
     ValueError
-        If it is no such file, has no such grid or one of another kind, or is damaged.
+        If it is not a file of this kind, has no such grid or one of another kind, or is damaged.
     """
     try:
         file = _Reader(path.read_bytes())

@@ -20,7 +20,7 @@ def of_pair(vertices: Any, faces: Any) -> Iterator[Mesh]:
     ValueError
         If an array has another shape, or an index is not below V.
     TypeError
-        If vertices are no real numbers, or faces no integers.
+        If vertices are not real numbers, or faces are not integers.
     """
     points = real_array("vertices", vertices)
     if points.ndim != 2 or points.shape[1] != 3:

@@ -74,7 +74,7 @@ def read_text(text: bytes, elements: Sequence[Element]) -> dict[str, Data]:
     Raises
     ------
     ValueError
-        If the text is cut short, or has a word that is no number.
+        If the text is cut short, or has a word that is not a number.
     """
     cells = _Words(text)
     try:

@@ -72,7 +72,7 @@ def of_tensors(mesh: Any) -> Iterator[Mesh]:
     Warns
     -----
     RuntimeWarning
-        Once, for attributes that are no rows of real numbers, and parts of the material without an effect.
+        Once, for attributes that are not rows of real numbers, and parts of the material without an effect.
     """
     left_out = LeftOut("open3d.t.geometry.TriangleMesh")
     of_vertices, of_faces = _arrays(mesh.vertex), _arrays(mesh.triangle)

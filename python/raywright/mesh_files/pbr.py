@@ -135,7 +135,7 @@ class Pbr(NamedTuple):
     ior : float
         Index of refraction.
     transmission : float
-        Share of light that goes through what is no metal (KHR_materials_transmission).
+        Share of light that goes through where it is not a metal (KHR_materials_transmission).
     transmission_picture : Picture, optional
         Of that share, in red.
     within : Within, optional
@@ -265,7 +265,7 @@ class Pbr(NamedTuple):
         return (0.0 if blue is None else _scaled(blue, metallic)), _scaled(green, roughness)
 
     def _clear(self, body: Material) -> Material:
-        """Return a material that light goes through where it is no metal."""
+        """Return a material that light goes through where it is not a metal."""
         metallic, roughness = self._shares()
         clear: Material = self._glass(roughness)
         share: Number = self.transmission

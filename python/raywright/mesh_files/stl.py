@@ -102,7 +102,7 @@ def _facets(body: bytes, count: int) -> tuple[Floats, NDArray[np.int64]]:
     if len(numbers) == 12 * count:
         points = numbers.reshape(-1, 4, 3)[:, 1:].reshape(-1, 3)
         return points, np.arange(len(points)).reshape(-1, 3)
-    # Normals that are no numbers, and facets with more corners.
+    # Normals that are not numbers, and facets with more corners.
     found = [_VERTEX.findall(facet) for facet in body.split(b"endfacet")[:count]]
     counts = np.array([len(corners) for corners in found], np.int64)
     points = np.array([corner for corners in found for corner in corners], np.float64).reshape(-1, 3)

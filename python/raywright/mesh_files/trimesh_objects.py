@@ -102,7 +102,7 @@ def _by_material(visual: Any, count: int) -> Iterator[tuple[Any, NDArray[np.int6
     which = np.asarray(which).reshape(-1)
     if len(which) != count or (len(which) and not 0 <= which.min() <= which.max() < len(materials)):
         raise ValueError(
-            f"face_materials must be {count} numbers of {len(materials)} materials, one a face, got "
+            f"face_materials must be {count} numbers of {len(materials)} materials, one per face, got "
             + (f"{len(which)}" if len(which) != count else f"{which.min()} to {which.max()}")
         )
     for number in np.unique(which):

@@ -47,7 +47,7 @@ class ConeQueries(Compilable):
         ------
         ValueError
             If a last dimension is not 3, leading shapes do not broadcast, `half_angle` is NaN or out of
-            range, `t_max` is NaN, or something in the scene is no mesh.
+            range, `t_max` is NaN, or something in the scene is not a mesh.
         TypeError
             If an array does not hold real numbers.
 

@@ -13,7 +13,7 @@ from .scattering_samples import BsdfSamples, LightSamples
 
 
 class Interactions:
-    """Surface interactions of a batch of rays: an entry a ray. Made by `Scene.interactions`.
+    """Surface interactions of a batch of rays: one entry per ray. Made by `Scene.interactions`.
 
     Arrays are float64 and read-only, NaN for misses unless said otherwise. Indexing with a mask or with
     indices gives a part of the batch.
@@ -282,7 +282,7 @@ class Interactions:
         Returns
         -------
         Rays
-            An entry a ray; NaN origins for misses.
+            One entry per ray; NaN origins for misses.
 
         See Also
         --------

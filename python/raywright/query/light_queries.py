@@ -27,7 +27,7 @@ class LightQueries(Compilable):
         Returns
         -------
         Interactions
-            An entry a ray.
+            One entry per ray.
 
         Raises
         ------

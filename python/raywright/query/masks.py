@@ -29,7 +29,7 @@ def counted(shapes: ShapeMask | None, cull: Cull | None, all_shapes: Sequence[An
     Raises
     ------
     ValueError
-        If a mask has not one entry a shape, a name is that of no shape, or `cull` is not "back".
+        If a mask has not one entry per shape, a name is that of no shape, or `cull` is not "back".
     TypeError
         If `shapes` is neither bool nor names.
     """

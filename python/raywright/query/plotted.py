@@ -43,8 +43,8 @@ class PlottedPoints:
         ImportError
             If matplotlib is not installed (``pip install 'raywright[plot]'``).
         ValueError
-            If there is no such name, an attribute has several numbers a point, a file has another suffix, or
-            axes have another number of dimensions.
+            If there is no such name, an attribute has several numbers per point, a file has another suffix,
+            or axes have another number of dimensions.
         TypeError
             If `ax` or `name` is something else.
         OSError
@@ -91,5 +91,5 @@ def _values(points: Any, name: str) -> NDArray[np.float64]:
     found: NDArray[np.float64] = points.interpolate(name)
     if found.shape != points.primitive_id.shape:
         told = found.shape[points.primitive_id.ndim :]
-        raise ValueError(f"name must be an attribute of one number a point, {name!r} has {told}")
+        raise ValueError(f"name must be an attribute of one number per point, {name!r} has {told}")
     return found

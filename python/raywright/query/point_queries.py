@@ -145,7 +145,7 @@ class PointQueries(Compilable):
         Points that are NaN or infinite have no closest point. Moving instances are where they are as the
         shutter opens.
 
-        Shapes that are no meshes, and instances, are found through a tree of their boxes, which is built by
+        Shapes that are not meshes, and instances, are found through a tree of their boxes, which is built by
         the first query. Distances to shapes in an instance are measured in the scene's space, so that
         transforms that scale some lengths more than others, nested ones too, are as good as any.
 

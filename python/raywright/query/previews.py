@@ -1,4 +1,4 @@
-"""Pictures of a ray and a shadow ray a pixel."""
+"""Pictures of a ray and a shadow ray per pixel."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Previews(Compilable):
         background: ArrayLike = 0.0,
         threads: int | None = None,
     ) -> NDArray[Any]:
-        """Draw the scene by one ray and one shadow ray a pixel: a picture for frames in real time.
+        """Draw the scene by one ray and one shadow ray per pixel: a picture for frames in real time.
 
         A pixel is the albedo of the surface seen at its center times the cosine between the geometric normal,
         on the side that is seen, and the light (Lambert 1760), 0 in shadow. The core completes each tile of
@@ -69,7 +69,7 @@ class Previews(Compilable):
             If `out` has another shape, is read-only or not C-contiguous, `dtype` contradicts it, the sun's
             direction has no length, or a number is out of its range or not finite.
         TypeError
-            If `camera` is no camera, `light` no light, or `dtype` or that of `out` neither uint8 nor float32.
+            If `camera` is not a camera, `light` is not a light, or the dtype is neither uint8 nor float32.
         KeyboardInterrupt
             When Ctrl-C is pressed; `out` then holds part of the picture.
 

@@ -102,7 +102,7 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         ValueError
             If no shape of the scene has the attribute, or its values have different shapes.
         TypeError
-            If `name` is no str.
+            If `name` is not a str.
 
         See Also
         --------
@@ -236,13 +236,14 @@ class SurfacePoints(Known, Tabular, PlottedPoints):
         return Surface(*(part.reshape(lead + part.shape[1:]) for part in parts))
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Return the data as flat arrays by name, an entry or a row for each point.
+        """Return a dict of flat arrays, the columns of a table.
 
         Returns
         -------
         dict
-            One entry a ray or point for `Hits` and `ClosestPoints`, one entry a hit for `AllHits`, with its
-            `ray`. Arrays of three columns are apart, as x, y and z, and those of two as u and v.
+            Arrays with one entry per ray (`Hits`), per query point (`ClosestPoints`) or per hit (`AllHits`,
+            with the index of its ray in `ray`). A position becomes the columns x, y and z, and the other
+            vectors columns such as normal_x.
 
         See Also
         --------

@@ -43,7 +43,7 @@ def names_of(aov: str | Iterable[str]) -> tuple[str, ...]:
     ValueError
         If one is not known.
     TypeError
-        If they are no names.
+        If they are not names.
     """
     if not isinstance(aov, Iterable):
         raise TypeError(f"aov must be names, got {aov!r}")

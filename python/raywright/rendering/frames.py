@@ -81,9 +81,9 @@ def render_frames(
     ------
     ValueError
         If a number is out of its range, `out` has no field for the number, or a film cannot have the size of
-        the frames; and as `render` does.
+        the frames; also as raised by `render`.
     TypeError
-        If an argument is of the wrong kind, or a frame is no scene and camera; and as `render` does.
+        If an argument is of the wrong kind, or a frame is not a scene and camera; also as raised by `render`.
     ImportError
         If imageio is missing for a film.
     OSError

@@ -164,7 +164,7 @@ class Image:
         ValueError
             If `level` is out of its range.
         TypeError
-            If it is not a number.
+            If `level` is not a number.
 
         See Also
         --------
@@ -220,7 +220,7 @@ class Image:
         ImportError
             If Open Image Denoise is asked for and missing.
         TypeError
-            If `threads` is no integer.
+            If `threads` is not an integer.
 
         See Also
         --------

@@ -135,7 +135,7 @@ def render(
         mentions pixels without samples.
     halves : bool
         True if ``image.halves`` keeps two independent halves of the picture, with albedo, normal and depth of
-        the first hit, for `Image.denoise`. The picture does not change; memory grows by 290 bytes a pixel
+        the first hit, for `Image.denoise`. The picture does not change; memory grows by 290 bytes per pixel
         during the render, and by 130 afterwards.
     denoise : bool or str
         True to apply `Image.denoise` at the end; a str is its `method`. `error` limits the error before

@@ -142,7 +142,7 @@ class RenderSetup:
         ValueError
             If a number is out of its range.
         TypeError
-            If it is not an integer.
+            If an argument is not an integer.
 
         Examples
         --------

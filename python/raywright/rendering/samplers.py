@@ -49,7 +49,7 @@ class Stratified:
     Raises
     ------
     ValueError
-        If `batch` is no power of two, or out of range.
+        If `batch` is not a power of two, or out of range.
     TypeError
         If it is not an integer.
 
@@ -85,7 +85,7 @@ class Halton:
     Raises
     ------
     ValueError
-        If `batch` is no power of two, or out of range.
+        If `batch` is not a power of two, or out of range.
     TypeError
         If it is not an integer.
 
@@ -121,7 +121,7 @@ class Sobol:
     Raises
     ------
     ValueError
-        If `batch` is no power of two, or out of range.
+        If `batch` is not a power of two, or out of range.
     TypeError
         If it is not an integer.
 
@@ -162,7 +162,7 @@ class Lattice:
     Raises
     ------
     ValueError
-        If `batch` is no power of two, or out of range.
+        If `batch` is not a power of two, or out of range.
     TypeError
         If it is not an integer.
 

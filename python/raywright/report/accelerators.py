@@ -98,7 +98,7 @@ class AcceleratorReport(Table[tuple[Any, ...]]):
         Parameters
         ----------
         counts : sequence of numbers
-            Number of rays traced after a build; whole, and 1 at least.
+            Numbers of rays traced after a build: whole numbers, at least 1.
 
         Returns
         -------
@@ -232,7 +232,7 @@ def rays_per_build(
     scene, accelerators, rays, threads, repeats, seed
         As in `accelerators`; by default rays take all cores, as builds do.
     counts : sequence of numbers
-        Number of rays traced after a build; whole, and 1 at least.
+        Numbers of rays traced after a build: whole numbers, at least 1.
 
     Returns
     -------

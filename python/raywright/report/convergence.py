@@ -149,8 +149,8 @@ def convergence(
     TypeError
         If an argument has the wrong type.
     ValueError
-        If there is no contender, one has an argument that `render` has not or that is given by the report, a
-        number is out of its range, or the reference has another size than the picture.
+        If there is no contender; if one has an argument that `render` does not take, or that the report sets;
+        if a number is out of its range, or the reference has another size than the picture.
 
     See Also
     --------

@@ -54,7 +54,7 @@ def first_hits(scene: Scene, camera: AnyCamera, threads: int | None = 1, repeats
     Raises
     ------
     ValueError
-        If `repeats` or `threads` is below 1, or something in the scene is no mesh.
+        If `repeats` or `threads` is below 1, or something in the scene is not a mesh.
     TypeError
         If an argument has the wrong type.
 

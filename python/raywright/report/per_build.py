@@ -112,7 +112,7 @@ def rays_per_build_of(
     costs : iterable of (str, float, float)
         Name, seconds to build, and seconds a ray.
     counts : sequence of numbers
-        Number of rays traced after a build; whole, and 1 at least.
+        Numbers of rays traced after a build: whole numbers, at least 1.
 
     Raises
     ------

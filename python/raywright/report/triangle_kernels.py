@@ -161,7 +161,7 @@ def kernels(pairs: int = 10_000, seed: SeedLike = 0, repeats: int = 15) -> Kerne
     ValueError
         If a number is outside its range.
     TypeError
-        If it is not an integer.
+        If an argument is not an integer.
 
     See Also
     --------

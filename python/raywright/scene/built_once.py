@@ -49,7 +49,7 @@ class BuiltOnce(Queries):
         TypeError
             If `progress` is anything else.
         ValueError
-            If something in the scene cannot be.
+            If something in the scene cannot be compiled.
         KeyboardInterrupt
             At once, when Ctrl-C is pressed, as in any query that compiles the scene. The scene is unchanged,
             and can be compiled again.

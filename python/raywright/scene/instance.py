@@ -43,7 +43,7 @@ class Location(NamedTuple):
     shape_id : int
         Index among the ``shapes`` of the innermost instance.
     face : int
-        Face of the shape; 0 if the shape is no mesh.
+        Face of the shape; 0 if the shape is not a mesh.
     """
 
     path: tuple[tuple[int, int], ...]
@@ -184,9 +184,9 @@ class Instance:
         Raises
         ------
         ValueError
-            If it is negative or not below `primitives`.
+            If `primitive_id` is negative or not below `primitives`.
         TypeError
-            If it is not an integer.
+            If `primitive_id` is not an integer.
 
         See Also
         --------
@@ -319,7 +319,7 @@ def _unpickled(kind: type[Instance], parts: tuple[Any, ...]) -> Instance:
 
 
 def _count(shape: Mesh | Shape) -> int:
-    """Return how many primitives a shape is: one if it is no mesh."""
+    """Return how many primitives a shape is: one if it is not a mesh."""
     return face_count(shape) if isinstance(shape, Mesh) else 1
 
 
@@ -402,7 +402,7 @@ def only_meshes(shapes: Any) -> tuple[Mesh, ...]:
     Raises
     ------
     TypeError
-        If one of them is no mesh; otherwise as `meshes`.
+        If one of them is not a mesh; otherwise as `meshes`.
     """
     found = []
     for shape in _each(shapes, "auto"):

@@ -255,7 +255,7 @@ class Scene(BuiltOnce):
         Raises
         ------
         TypeError
-            If `Scene` has no such argument; and as `Scene` does.
+            If `Scene` has no such argument; also as raised by `Scene`.
         ValueError, FileNotFoundError
             As `Scene` does.
 

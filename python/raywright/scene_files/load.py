@@ -80,14 +80,13 @@ def load(
     FileNotFoundError
         If the file, or one that it names, is missing.
     ValueError
-        If it cannot be read, or holds something that is not supported, or a number is out of range; if `weld`
-        is negative or not finite.
+        If the file cannot be read, or holds something that is not supported; if a number is out of range, or
+        `weld` is negative or not finite.
     TypeError
-        If `path` is no path, a size is no integer, `sampler` is none, or there are parameters and it is no
-        scene of Mitsuba.
+        If `path` is not a path, a size is not an integer, `sampler` is not a sampler, or
+        `parameters` is given for a file that is not Mitsuba's.
     ImportError
-        If it is a USD file and usd-core is not installed, or another that trimesh reads with a package that
-        is not: which.
+        If the package that reads the kind of file is not installed, such as usd-core for USD; it is named.
 
     Warns
     -----

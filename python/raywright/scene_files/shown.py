@@ -60,7 +60,7 @@ def shown(
     ValueError
         If there is nothing to show, or a number is out of range.
     TypeError
-        If a size is no integer.
+        If a size is not an integer.
     """
     parts = meshes(shapes)
     radiance = own_radiance(parts)
@@ -81,7 +81,7 @@ def size_of(width: int | None, height: int | None) -> tuple[int, int]:
     ValueError
         If a number is out of its range.
     TypeError
-        If it is no integer.
+        If an argument is not an integer.
     """
     if width is None and height is None:
         return WIDTH, HEIGHT

@@ -33,7 +33,7 @@ def turned(shapes: Iterable[Mesh], angle: float, axis: ArrayLike = (0.0, 1.0, 0.
     ValueError
         If `angle` or `axis` are not finite, or `axis` is zero.
     TypeError
-        If they are not numbers.
+        If an argument is not a number.
 
     See Also
     --------

@@ -24,7 +24,7 @@ def diagonal_wall(boards: int = 800, angle: float = 45.0, layers: int = 4) -> li
     Parameters
     ----------
     boards : int
-        Number of boards in all; at least one a layer, and 12 triangles a board.
+        Number of boards in all; at least one per layer, and 12 triangles per board.
     angle : float
         Rotation of the wall about the z axis in degrees, anticlockwise as seen from +z.
     layers : int

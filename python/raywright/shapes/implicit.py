@@ -46,7 +46,7 @@ class Implicit(Shape):
         names), or the box is not finite or has no volume. If the transform is not a finite affine (4, 4)
         matrix, or has no inverse.
     TypeError
-        If the expression is no string, or a number or a material is something else.
+        If the expression is not a string, or a number or a material is something else.
 
     See Also
     --------

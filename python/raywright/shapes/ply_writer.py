@@ -71,7 +71,7 @@ def meant(names: Iterable[str]) -> set[str]:
 
 
 def _columns(what: str, attributes: Any, others: list[Column]) -> list[Column]:
-    """Return attributes as columns; of those with several numbers a row, one each."""
+    """Return attributes as columns; of those with several numbers per row, one each."""
     found: list[Column] = []
     told = [name for name, _ in others]
     for name, array in attributes.items():

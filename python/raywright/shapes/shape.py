@@ -1,4 +1,4 @@
-"""The base class of shapes that are no meshes."""
+"""The base class of shapes that are not meshes."""
 
 from __future__ import annotations
 

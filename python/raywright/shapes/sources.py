@@ -111,7 +111,7 @@ def leaves(given: Any, name: str | None = None) -> Iterator[tuple[str | None, An
     ValueError
         If a list contains itself.
     TypeError
-        If a key of a dict is no str.
+        If a key of a dict is not a str.
     """
     # An explicit stack of open iterators, since they may nest to any depth.
     left, within = [iter(((name, given),))], [0]

@@ -24,7 +24,7 @@ def weld_tolerance(weld: Weld) -> float | None:
     ValueError
         If it is a text but "auto", or negative or not finite.
     TypeError
-        If it is not a number.
+        If `weld` is not a number.
     """
     if weld is None or weld is False:
         return 0.0
@@ -47,7 +47,7 @@ def welded(shapes: Sequence[_Shape], weld: Weld = "auto") -> tuple[_Shape, ...]:
     Parameters
     ----------
     shapes : sequence of shapes
-        Shapes that are no meshes stay as they are, and so are meshes without a moved corner: the same
+        Shapes that are not meshes stay as they are, and so are meshes without a moved corner: the same
         objects.
     weld : "auto", float or None
         How close; "auto" is 2^-21 of the largest coordinate of a mesh where all are float32 numbers and 2^-47

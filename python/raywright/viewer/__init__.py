@@ -230,7 +230,7 @@ def view(
     """Show a scene in the browser, or in a notebook cell, with a camera moved by the mouse.
 
     The page is served to this machine only, until the process ends or the viewer is closed. With WebGPU, the
-    page draws scenes of meshes itself: one ray and one shadow ray a pixel while the camera moves, then more
+    page draws scenes of meshes itself: one ray and one shadow ray per pixel while the camera moves, then more
     and more paths. For materials, lights and integrators that the page does not support, the core renders
     once the camera is still. Without WebGPU the core renders all pictures: a small one at once, then a better
     one. The error of the picture is always shown. The key g switches between page and core. Nothing is

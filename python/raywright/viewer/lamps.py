@@ -1,4 +1,4 @@
-"""Light while the camera moves: of all lamps one, for one shadow ray a pixel, and one color of the sky."""
+"""Light while the camera moves: of all lamps one, for one shadow ray per pixel, and one color of the sky."""
 
 from __future__ import annotations
 

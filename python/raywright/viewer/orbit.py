@@ -56,7 +56,7 @@ class View:
         Raises
         ------
         ValueError
-            If it is no mapping, or has another name in it, or a number is out of its range.
+            If it is not a mapping, or has another name in it, or a number is out of its range.
         TypeError
             If an argument is not a number.
         """

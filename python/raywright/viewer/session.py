@@ -410,7 +410,7 @@ class Session:
             return not self._changed.wait_for(lambda: self._closed or self._wanted != job.number, _REST)
 
     def _preview(self, job: _Job) -> None:
-        """Show something soon: a ray and a shadow ray a pixel."""
+        """Show something soon: a ray and a shadow ray per pixel."""
         camera = resized(self._orbit.camera(job.view), *job.size)
         began = time.monotonic()
         pixels = self._scene.preview(

@@ -52,7 +52,7 @@ impl Facets for Beckmann {
         self.at((x * x + y * y) / square, square)
     }
 
-    /// From the unnormalised half vector, which has the same slopes.
+    /// From the unnormalized half vector, which has the same slopes.
     #[inline(always)]
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
         let ([ax, ay], q) = (self.alpha, wo + wi);

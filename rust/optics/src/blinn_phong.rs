@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 
 /// Diffuse reflection and Blinn's form of Phong's lobe ("Models of Light Reflection for Computer Synthesized Pictures",
-/// 1977): kd / π + ks N cosⁿ θh, with θh the half vector's angle. N = (n + 2)(n + 4) / (8π (2^(−n/2) + n)) normalises
+/// 1977): kd / π + ks N cosⁿ θh, with θh the half vector's angle. N = (n + 2)(n + 4) / (8π (2^(−n/2) + n)) normalizes
 /// the lobe: a specular share of 1 reflects exactly all light at normal incidence (Giesen, "Phong and Blinn-Phong
 /// normalization factors", 2009), and less at every other angle. Both sides reflect.
 #[derive(Clone, Copy, Debug)]

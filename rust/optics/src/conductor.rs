@@ -16,7 +16,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 /// provide their loss (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017). The BRDF is
 /// reciprocal, and a perfect conductor is white at every roughness. Both sides reflect.
 ///
-/// A measured metal has a spectral colour ([`super::conductors::Curve`]) for single and multiple scattering, and a
+/// A measured metal has a spectral color ([`super::conductors::Curve`]) for single and multiple scattering, and a
 /// channel may exceed 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Conductor<F: Lossy = Ggx> {

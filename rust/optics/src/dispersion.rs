@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 /// Index of refraction as a function of wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dispersion {
-    /// n = B + C / λ², with λ in micrometres (Cauchy, 1836).
+    /// n = B + C / λ², with λ in micrometers (Cauchy, 1836).
     Cauchy([f64; 2]),
-    /// n² = 1 + Σ B λ² / (λ² − C), with λ² and C in square micrometres (Sellmeier, 1871).
+    /// n² = 1 + Σ B λ² / (λ² − C), with λ² and C in square micrometers (Sellmeier, 1871).
     Sellmeier(Vec<[f64; 2]>),
 }
 

@@ -7,7 +7,7 @@ use super::thin_film::{self, Complex};
 
 /// A film between two dielectrics. Each channel reflects the integral over wavelengths, clamped to [0, 1], and
 /// transmits the rest. So energy is conserved and no channel is negative. Clamping changes a channel by some
-/// thousandths at most, where a colour is out of gamut.
+/// thousandths at most, where a color is out of gamut.
 #[derive(Clone, Copy, Debug)]
 pub struct Filmed {
     /// Thickness in nm.

@@ -3,7 +3,7 @@
 use super::Rgb;
 use glam::DVec3;
 
-/// Reflectance of a dielectric for unpolarised light (Fresnel, 1823), at a `cosine` of incidence, 0 to 1. `eta` is the
+/// Reflectance of a dielectric for unpolarized light (Fresnel, 1823), at a `cosine` of incidence, 0 to 1. `eta` is the
 /// index of refraction beyond the interface over that before it. The result is 1 beyond the critical angle.
 ///
 /// Differences of nearly equal terms are avoided: with e = η² − 1 and g = η cos θt = √(e + c²), c − g is −e / (c + g).
@@ -32,7 +32,7 @@ pub fn bounded(eta: f64) -> f64 {
 
 /// Incident direction of light that leaves along `wo` after refraction at a facet with unit normal `h`, on the side of
 /// `wo`. `eta` is the index of refraction on the far side over that on the side of `wo`. Returns `None` under total
-/// reflection. The direction is normalised as accurately as `wo` and `h`, and its difference from −`wo` is accurate
+/// reflection. The direction is normalized as accurately as `wo` and `h`, and its difference from −`wo` is accurate
 /// even if `eta` is close to 1.
 #[inline]
 pub fn refract(wo: DVec3, h: DVec3, eta: f64) -> Option<DVec3> {
@@ -103,7 +103,7 @@ impl ConductorIndex {
         [self.real, self.imaginary2]
     }
 
-    /// Reflectance of unpolarised light at a `cosine` of incidence (Born and Wolf, "Principles of Optics", 14.2).
+    /// Reflectance of unpolarized light at a `cosine` of incidence (Born and Wolf, "Principles of Optics", 14.2).
     #[inline(always)]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         let (c, c2) = (cosine, cosine * cosine);
@@ -112,7 +112,7 @@ impl ConductorIndex {
         // a² + b² = |η² − sin²θ| for the complex η.
         let norm = root(real * real + self.imaginary2);
         let a = root(((norm + real) * 0.5).at_least(Rgb::ZERO));
-        // One polarisation is (sum − twice) / (sum + twice), and the other is that times (even − odd) / (even + odd);
+        // One polarization is (sum − twice) / (sum + twice), and the other is that times (even − odd) / (even + odd);
         // this is their mean.
         let (sum, twice) = (norm + c2, 2.0 * c * a);
         let (even, odd) = (c2 * norm + s2 * s2, s2 * twice);

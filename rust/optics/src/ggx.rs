@@ -42,7 +42,7 @@ impl Facets for Ggx {
         FRAC_1_PI / (ax * ay * square * square)
     }
 
-    /// From the unnormalised half vector, with α² divided out. With q = wo + wi and p = αx αy the density is |q|⁴ p³ /
+    /// From the unnormalized half vector, with α² divided out. With q = wo + wi and p = αx αy the density is |q|⁴ p³ /
     /// (π (αy² qx² + αx² qy² + p² qz²)²), and the cosine is |q| / 2.
     #[inline(always)]
     fn mirroring(&self, wo: DVec3, wi: DVec3) -> (f64, f64) {
@@ -117,7 +117,7 @@ mod tests {
                 let wi = direction(0.7 * wo.z, 0.3 + turn);
                 let h = (wo + wi).normalize();
                 let (density, cosine) = ggx.mirroring(wo, wi);
-                // A half vector is accurate to 10⁻¹⁶ over its unnormalised length, and the density to that over a
+                // A half vector is accurate to 10⁻¹⁶ over its unnormalized length, and the density to that over a
                 // lobe's width.
                 let known = 1e-15 / (wo + wi).length();
                 assert!(

@@ -11,7 +11,7 @@ pub trait Split: Copy + Debug {
     /// True if something lies between the media, so that their own reflectance differs.
     const DIFFERS: bool = false;
 
-    /// A number if all channels are equal, otherwise a colour.
+    /// A number if all channels are equal, otherwise a color.
     type Share: Share;
 
     /// Reflectance at a `cosine` of incidence, 0 to 1. `eta` is the index of refraction beyond over that before the
@@ -44,7 +44,7 @@ pub(super) fn beyond(eta: f64, w: DVec3) -> f64 {
     if w.z > 0.0 { eta } else { 1.0 / eta }
 }
 
-/// A share of light, grey or coloured.
+/// A share of light, gray or colored.
 pub trait Share: Copy + InLanes + Mul<f64, Output = Self> + Div<f64, Output = Self> {
     /// Zero.
     const NONE: Self;
@@ -61,7 +61,7 @@ pub trait Share: Copy + InLanes + Mul<f64, Output = Self> + Div<f64, Output = Se
     /// Adds a number to each channel.
     fn plus(self, more: f64) -> Self;
 
-    /// Converts to a colour.
+    /// Converts to a color.
     fn rgb(self) -> Rgb;
 }
 

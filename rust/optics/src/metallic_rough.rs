@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_1_PI;
 
 /// The metallic-roughness model (Khronos, "glTF 2.0", 2021, appendix B): GGX microfacets of roughness α = roughness²,
 /// with Schlick's Fresnel term. The reflectance F₀ at normal incidence is interpolated by `metallic` between 0.04 and
-/// the base colour. The dielectric part has a diffuse base.
+/// the base color. The dielectric part has a diffuse base.
 ///
 /// Where the specification leaves the coupling open, this BRDF is reciprocal and conserves energy. The base gets the
 /// light that dielectric facets transmit, (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and losses of metal facets are
@@ -26,7 +26,7 @@ pub struct MetallicRough {
     base: Rgb,
     /// Multiple scattering of metal, over π and the mean loss.
     multiple: Rgb,
-    /// Base colour.
+    /// Base color.
     color: Rgb,
     metallic: f64,
     dielectric: Ends,
@@ -67,7 +67,7 @@ impl MetallicRough {
     const DIELECTRIC: Ends = Ends { normal: 0.04, grazing: 1.0 };
     const IOR: f64 = 1.5;
 
-    /// Creates the BRDF from a base colour, a metalness and a roughness, each 0 to 1. Where roughness² is below
+    /// Creates the BRDF from a base color, a metalness and a roughness, each 0 to 1. Where roughness² is below
     /// [`Ggx::SMOOTH`] it is specular.
     pub fn new(base_color: Rgb, metallic: f64, roughness: f64) -> Self {
         Self::of(base_color, metallic, roughness, Self::DIELECTRIC)

@@ -73,7 +73,7 @@ impl Look {
         (0.65 * eta - 0.35).max(0.0) * self.roughness
     }
 
-    /// Base color normalised to luminance 1.
+    /// Base color normalized to luminance 1.
     #[inline(always)]
     fn tint(&self) -> Rgb {
         if self.luminance > 0.0 { self.base_color / self.luminance } else { Rgb::ONE }

@@ -9,7 +9,7 @@ use super::spectra::Waves;
 use super::{Bsdf, BsdfSample, Rgb};
 use glam::DVec3;
 
-/// A film with the same medium on both sides. It reflects in interference colours and transmits the rest straight.
+/// A film with the same medium on both sides. It reflects in interference colors and transmits the rest straight.
 #[derive(Clone, Copy, Debug)]
 pub struct SoapFilm {
     film: Filmed,

@@ -1,4 +1,4 @@
-//! RGB colours.
+//! RGB colors.
 
 use glam::{DVec3, Vec3};
 use raywright_base::math::{InLanes, VectorLanes};
@@ -23,7 +23,7 @@ impl Rgb {
         self.0.as_vec3()
     }
 
-    /// Creates a colour from its channels.
+    /// Creates a color from its channels.
     #[inline(always)]
     pub const fn new(red: f64, green: f64, blue: f64) -> Self {
         Self(DVec3::new(red, green, blue))
@@ -41,7 +41,7 @@ impl Rgb {
         Self(DVec3::splat(value))
     }
 
-    /// Creates a colour from its channels.
+    /// Creates a color from its channels.
     #[inline(always)]
     pub const fn from_array(channels: [f64; 3]) -> Self {
         Self(DVec3::from_array(channels))
@@ -156,7 +156,7 @@ impl Rgb {
     }
 }
 
-/// Colours, one per lane.
+/// Colors, one per lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct RgbLanes(VectorLanes);
@@ -165,13 +165,13 @@ impl RgbLanes {
     /// Black in every lane.
     pub const ZERO: Self = Self(VectorLanes::ZERO);
 
-    /// The colour of a lane.
+    /// The color of a lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Rgb {
         Rgb(self.0.get(lane))
     }
 
-    /// Sets the colour of a lane.
+    /// Sets the color of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, colour: Rgb) {
         self.0.set(lane, colour.0);

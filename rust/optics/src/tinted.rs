@@ -6,7 +6,7 @@ use raywright_base::math::{DVec3, LANES, VectorLanes};
 use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 
-/// A BSDF whose reflection and transmission are multiplied by colours.
+/// A BSDF whose reflection and transmission are multiplied by colors.
 #[derive(Clone, Copy, Debug)]
 pub struct Tinted<B: Bsdf> {
     /// The BSDF without tint.

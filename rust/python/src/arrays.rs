@@ -254,7 +254,7 @@ pub fn numbers<'a, T: Element>(name: &str, array: &'a PyReadonlyArray1<'_, T>) -
     array.as_slice().map_err(|_| PyValueError::new_err(format!("{name} must be C-contiguous")))
 }
 
-/// An uninitialised array with leading shape `lead`, and `width` entries per row if it is given. The caller must write
+/// An uninitialized array with leading shape `lead`, and `width` entries per row if it is given. The caller must write
 /// every entry. Zeroing would add a single-threaded pass over memory.
 pub fn unwritten<'py, T: Element>(
     py: Python<'py>,

@@ -18,7 +18,7 @@ struct RayChunk<'a> {
     from: usize,
     len: usize,
     count: usize,
-    /// Order of runs of neighbours after `window`, if it is neither sequential nor an image's tiling. The remainder of
+    /// Order of runs of neighbors after `window`, if it is neither sequential nor an image's tiling. The remainder of
     /// a window, shorter than a run, is last.
     order: Option<&'a [u16]>,
     window: usize,

@@ -95,7 +95,7 @@ pub fn denoise_candidates<'py>(
     PyArray1::from_vec(py, flat(found.into_iter().flatten())).reshape(&[2, ways, height, width, 3][..])
 }
 
-/// A picture, the errors of its pixels averaged over neighbours, its error with the ends of its interval, and whether
+/// A picture, the errors of its pixels averaged over neighbors, its error with the ends of its interval, and whether
 /// that is reliable.
 type Settled<'py> = (Bound<'py, PyArray3<f32>>, Bound<'py, PyArray3<f32>>, (f64, f64, f64), bool);
 

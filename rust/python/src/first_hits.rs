@@ -23,7 +23,7 @@ type HitArrays<'py> = (
     usize,
 );
 
-/// Closest hit of the ray through each pixel, by rasterisation. `offsets` (2,) or (H,W,2) are positions in the pixel.
+/// Closest hit of the ray through each pixel, by rasterization. `offsets` (2,) or (H,W,2) are positions in the pixel.
 #[pyfunction]
 pub fn first_hits<'py>(
     py: Python<'py>,

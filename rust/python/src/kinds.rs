@@ -1,4 +1,4 @@
-//! Kinds of things, recognised by type: an instance of a subclass of a class of the package is one of its kind.
+//! Kinds of things, recognized by type: an instance of a subclass of a class of the package is one of its kind.
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;

@@ -151,13 +151,13 @@ fn vector(row: [f64; 3]) -> DVec3 {
     DVec3::from_array(row)
 }
 
-/// A light with its RGB colours or, if `waves`, with their smooth spectra.
+/// A light with its RGB colors or, if `waves`, with their smooth spectra.
 fn coloured(light: impl Light + 'static, waves: bool) -> Arc<dyn Light> {
     let light = Arc::new(light);
     if waves { Arc::new(Waved::coloured(light)) } else { light }
 }
 
-/// A light scaled by three numbers or a `raywright.Spectrum`; `has_colours` tells whether it has colours besides.
+/// A light scaled by three numbers or a `raywright.Spectrum`; `has_colours` tells whether it has colors besides.
 fn shining(
     given: &Bound<'_, PyAny>,
     waves: bool,

@@ -58,7 +58,7 @@ fn homogeneous(given: &Bound<'_, PyAny>, waves: bool, parts: MediumParts) -> PyR
     Ok(if waves { Arc::new(WavedMedium::new(medium, [absorbs, scatters], Some(emission))) } else { medium })
 }
 
-/// A spectrum, used only if spectral, and the RGB colour that represents it.
+/// A spectrum, used only if spectral, and the RGB color that represents it.
 fn tint(told: &Bound<'_, PyAny>, meaning: Meaning, waves: bool) -> PyResult<Tinted> {
     if waves { spectra::tint(told, meaning) } else { Ok((flat(), Rgb::from_array(told.extract()?))) }
 }
@@ -67,7 +67,7 @@ fn flat() -> Arc<Spectrum> {
     Arc::new(Spectrum::Smooth(Smooth::of(Rgb::ONE, Role::Amount)))
 }
 
-/// A spectrum, and the RGB colour that represents it.
+/// A spectrum, and the RGB color that represents it.
 type Tinted = (Arc<Spectrum>, Rgb);
 
 /// A medium on a grid.

@@ -72,7 +72,7 @@ impl Rendering {
         let pixels = looked_at(py, || self.0.rgb())?;
         self.picture(py, pixels)
     }
-    /// Standard error of each pixel, the same pooled with neighbours, and its degrees of freedom; `None` if there are
+    /// Standard error of each pixel, the same pooled with neighbors, and its degrees of freedom; `None` if there are
     /// too few samples.
     #[getter]
     #[allow(clippy::type_complexity)]

@@ -1,4 +1,4 @@
-//! Spectra and indices of refraction of the Python package, read by attribute, and colours of spectra.
+//! Spectra and indices of refraction of the Python package, read by attribute, and colors of spectra.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -9,7 +9,7 @@ use raywright::optics::spectra::{self, FIRST, Illuminant, LAST, Response, Role, 
 use raywright::optics::thin_film::{self, Complex};
 use raywright::optics::{Dispersion, Dispersive, Rgb};
 
-/// Linear Rec. 709 colour of values at increasing wavelengths in nm, linear between them, and 0 outside. They are
+/// Linear Rec. 709 color of values at increasing wavelengths in nm, linear between them, and 0 outside. They are
 /// relative to daylight or, unless `of_daylight`, to equal-energy light of luminance 1.
 #[pyfunction]
 pub fn spectrum_rgb(rows: Vec<[f64; 2]>, of_daylight: bool) -> [f64; 3] {
@@ -37,7 +37,7 @@ pub fn daylight_power() -> Vec<f64> {
     (FIRST as u32..=LAST as u32).map(|nm| spectra::daylight(nm.into())).collect()
 }
 
-/// Reflectance of films for unpolarised light, one wavelength per row. Rows have wavelength and thickness in nm, cosine
+/// Reflectance of films for unpolarized light, one wavelength per row. Rows have wavelength and thickness in nm, cosine
 /// of incidence, indices of the surroundings and the film, and real and imaginary part of the base's index.
 #[pyfunction]
 pub fn film_reflectance(rows: Vec<[f64; 7]>) -> Vec<f64> {
@@ -47,10 +47,10 @@ pub fn film_reflectance(rows: Vec<[f64; 7]>) -> Vec<f64> {
     rows.into_iter().map(each).collect()
 }
 
-/// Smooth spectrum of a colour at wavelengths in nm; `bounded` for a reflectance, otherwise an unbounded amount.
+/// Smooth spectrum of a color at wavelengths in nm; `bounded` for a reflectance, otherwise an unbounded amount.
 ///
 /// # Errors
-/// A `ValueError` for a colour with negative channels.
+/// A `ValueError` for a color with negative channels.
 #[pyfunction]
 pub fn smooth_spectrum(colour: [f64; 3], bounded: bool, looked_up: bool, wavelengths: Vec<f64>) -> PyResult<Vec<f64>> {
     let colour = Rgb::from_array(colour);
@@ -92,7 +92,7 @@ pub fn table(given: &Bound<'_, PyAny>, meaning: Meaning) -> PyResult<Arc<Spectru
         .ok_or_else(|| PyValueError::new_err("a spectrum must have values"))
 }
 
-/// A spectrum and its RGB colour: of three numbers the smooth spectrum, or a `raywright.Spectrum`.
+/// A spectrum and its RGB color: of three numbers the smooth spectrum, or a `raywright.Spectrum`.
 ///
 /// # Errors
 /// As [`table`].

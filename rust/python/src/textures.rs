@@ -145,7 +145,7 @@ impl Textures {
         self.textures[meaning as usize].of(given, || self.read(given, meaning)).map(Value::Texture)
     }
 
-    /// Reads a value that is not a colour.
+    /// Reads a value that is not a color.
     ///
     /// # Errors
     /// As [`Textures::value`].
@@ -169,7 +169,7 @@ impl Textures {
         Ok(self.plain(&object.getattr(name)?)?.number())
     }
 
-    /// Role of colours in spectral rendering; `None` for red, green and blue.
+    /// Role of colors in spectral rendering; `None` for red, green and blue.
     fn role(&self, meaning: Meaning) -> Option<Role> {
         match meaning {
             Meaning::Share if self.waves => Some(Role::Share),
@@ -185,7 +185,7 @@ impl Textures {
         }
     }
 
-    /// A texture with its own colours.
+    /// A texture with its own colors.
     fn coloured(&self, colours: impl Texture + 'static, meaning: Meaning) -> Arc<dyn Texture> {
         let colours = Arc::new(colours);
         match self.role(meaning) {

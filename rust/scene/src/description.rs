@@ -20,7 +20,7 @@ pub struct Shape {
 }
 
 impl Default for Shape {
-    /// An empty mesh, of 50 % grey.
+    /// An empty mesh, of 50 % gray.
     fn default() -> Self {
         let material = Arc::new(DiffuseMaterial::default());
         Self { surface: Surface::default(), material, emission: Emission::default() }

@@ -1,4 +1,4 @@
-//! First hits of a camera by rasterisation: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer
+//! First hits of a camera by rasterization: a z-buffer of primitives (Catmull, "A subdivision algorithm for computer
 //! display of curved surfaces", 1974). Every pixel's decision equals that of its ray.
 //!
 //! Each triangle is projected once, to a rectangle of pixels that contains all rays that can hit it
@@ -7,7 +7,7 @@
 //! the others the exact ray-triangle test ([`EdgeRay`]) decides the hit and its `t`, so hits equal those of
 //! [`Scene::intersect`](super::Scene::intersect) bit for bit.
 //!
-//! A tile falls back to the BVH if its triangles are so many or so large that rasterising them takes longer. The whole
+//! A tile falls back to the BVH if its triangles are so many or so large that rasterizing them takes longer. The whole
 //! picture falls back if there are too many triangles for its pixels, if a shape is not a mesh, or if the camera is not
 //! a pinhole at rest.
 
@@ -51,7 +51,7 @@ pub struct FirstHits<'a> {
     /// Triangle indices of each band of tiles, and the start of each band's list.
     in_band: Vec<u32>,
     splits: Vec<usize>,
-    /// True if tiles may be rasterised.
+    /// True if tiles may be rasterized.
     is_plain: bool,
     level: Level,
 }
@@ -152,7 +152,7 @@ fn lists(lists: usize, count: usize, of: impl Fn(usize) -> std::ops::RangeInclus
 struct Tile {
     /// The rays, row by row.
     rays: Vec<Ray>,
-    /// The hits, row by row. During rasterisation their `t` is along the scaled direction.
+    /// The hits, row by row. During rasterization their `t` is along the scaled direction.
     hits: Vec<Hit>,
     triangles: Vec<Projected>,
     rows: Vec<Row>,
@@ -188,7 +188,7 @@ impl Tile {
         self.hits.clear();
         self.hits.resize(count, Hit::MISS);
         self.triangles.clear();
-        // Cost model: preparing a triangle for the tile and rasterising one row of it take about as long. A ray in the
+        // Cost model: preparing a triangle for the tile and rasterizing one row of it take about as long. A ray in the
         // BVH takes slightly longer than either.
         let most = count + count / 4;
         let mut work = if of.is_plain { 0 } else { most + 1 };
@@ -248,7 +248,7 @@ impl Tile {
     }
 }
 
-/// Rasterises the triangles of a tile one by one.
+/// Rasterizes the triangles of a tile one by one.
 struct Rasterise<'a, 'b> {
     tile: &'a mut Tile,
     of: &'a FirstHits<'b>,
@@ -258,7 +258,7 @@ struct Rasterise<'a, 'b> {
 impl Kernel<4> for Rasterise<'_, '_> {
     type Output = ();
 
-    // The lane type is not used: the compiler vectorises the row loops for the level, and the bits are the same at
+    // The lane type is not used: the compiler vectorizes the row loops for the level, and the bits are the same at
     // every level.
     #[inline(always)]
     fn run<S: Simd<4>>(self, _: S) {
@@ -369,7 +369,7 @@ mod tests {
     use proptest::prelude::*;
     use raywright_base::math::Vec3;
 
-    /// Rasterises at every level and checks that hits equal those of rays bit for bit. Returns the number of pixels
+    /// Rasterizes at every level and checks that hits equal those of rays bit for bit. Returns the number of pixels
     /// that used the BVH.
     fn agreed(scene: &Scene, camera: &dyn Camera, offsets: &[[f64; 2]]) -> usize {
         let (width, height) = (camera.width() as usize, camera.height() as usize);
@@ -409,7 +409,7 @@ mod tests {
         ] {
             let camera = Perspective::looking_at(position, target, DVec3::Y, fov, 53, 37).unwrap();
             let asked = agreed(&room, &camera, &[[0.5, 0.5]]);
-            // All tiles but the last of each row rasterise: those are five pixels wide, and their walls cost as much as
+            // All tiles but the last of each row rasterize: those are five pixels wide, and their walls cost as much as
             // their pixels.
             assert!(asked <= 5 * 37, "{asked} pixels of the tree");
         }

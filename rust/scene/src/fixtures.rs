@@ -26,7 +26,7 @@ pub fn rectangle(corner: [f32; 3], side: [f32; 3], other: [f32; 3]) -> Mesh {
     }
 }
 
-/// A diffuse surface of one colour that may emit.
+/// A diffuse surface of one color that may emit.
 pub fn shape(mesh: Mesh, reflectance: impl Into<[f64; 3]>, emission: f64) -> Shape {
     let reflectance = Rgb::from_array(reflectance.into()).into();
     let material = Arc::new(DiffuseMaterial { reflectance });

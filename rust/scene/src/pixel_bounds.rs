@@ -7,7 +7,7 @@
 //! half width and half height of the picture at distance 1, or more if the picture is not centered on the view
 //! ([`super::cameras::Window::onto_film`]). A relative corner has an error of u|q|, and its dot product with an axis
 //! 4u|q| more. Axes are orthogonal to within 4u. So the error of each coordinate is at most 16us|q|. A ray's direction
-//! takes three sums, a normalisation and three divisions, and passes through a point displaced by less than 16us. For
+//! takes three sums, a normalization and three divisions, and passes through a point displaced by less than 16us. For
 //! both together 64us|q| is allowed, called the slack.
 
 use super::cameras::{Camera, Perspective};

@@ -272,7 +272,7 @@ impl Plan {
         self.constants[shape as usize].as_ref().map(|[front, back]| if is_front { front } else { back })
     }
 
-    /// Reflectances of front and back, if both sides have one diffuse colour.
+    /// Reflectances of front and back, if both sides have one diffuse color.
     #[inline]
     pub fn diffuse(&self, shape: u32) -> Option<[Rgb; 2]> {
         self.diffuse[shape as usize]

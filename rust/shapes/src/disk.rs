@@ -12,12 +12,12 @@ use raywright_base::sampling::warp::uniform_disk;
 use std::cmp::Ordering;
 use std::f64::consts::{PI, TAU};
 
-/// The points of a plane between two distances from a centre, both included.
+/// The points of a plane between two distances from a center, both included.
 ///
-/// u is the angle about the normal in turns. v runs from the outer rim to the inner one, or to the centre.
+/// u is the angle about the normal in turns. v runs from the outer rim to the inner one, or to the center.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disk {
-    /// Its centre.
+    /// Its center.
     pub center: DVec3,
     /// The normal of the outside, with any length but 0.
     pub normal: DVec3,
@@ -56,7 +56,7 @@ impl Disk {
 /// an elliptic integral per sample.
 struct EllipseProjection {
     height: f64,
-    /// Distance and unit vector from the foot to the centre, in the disk's frame.
+    /// Distance and unit vector from the foot to the center, in the disk's frame.
     distance: f64,
     towards: [f64; 2],
     radius: f64,
@@ -131,7 +131,7 @@ impl EllipseProjection {
 }
 
 impl Disk {
-    /// Distance of the centre, in radii, from which sampling by area is as good.
+    /// Distance of the center, in radii, from which sampling by area is as good.
     const DISTANT: f64 = 3.0;
 
     /// Set up solid angle sampling from a point in the disk's frame; None if sampling is by area.

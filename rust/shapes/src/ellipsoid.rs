@@ -15,7 +15,7 @@ use raywright_base::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 /// Its surface parameters are those of the unscaled [`Sphere`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
-    /// Its centre.
+    /// Its center.
     pub center: DVec3,
     /// The semi-axes along x, y and z, each above 0.
     pub semi_axes: DVec3,

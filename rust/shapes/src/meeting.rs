@@ -204,7 +204,7 @@ mod tests {
         let found = told(|met| tell(solid, ray, met));
         prop_assert_eq!(found.len(), exact.len(), "{:?}", ray);
         for (f, e) in found.iter().zip(&exact) {
-            // At a tie either neighbour may be returned: 1 + 2⁻⁵³ + 2⁻¹⁰⁶ is a quotient of neighbours.
+            // At a tie either neighbor may be returned: 1 + 2⁻⁵³ + 2⁻¹⁰⁶ is a quotient of neighbors.
             prop_assert!(f == e || (f.0.abs_diff(e.0) == 1 && f.2 == e.2), "{f:?} {e:?} {ray:?}");
         }
         let sure = known.is_some_and(|meets| tell_refined(solid, ray, &meets, &mut |_| false).is_ok());

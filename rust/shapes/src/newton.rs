@@ -5,7 +5,7 @@ use super::solid::{Meet, Solid};
 use raywright_base::math::Bounded;
 use raywright_base::math::robust::UNIT;
 
-/// Relative distance from a tie between two f64 within which either neighbour may be returned.
+/// Relative distance from a tie between two f64 within which either neighbor may be returned.
 const NEAR: f64 = 1.0 / (1u64 << 60) as f64;
 
 /// Allowance for the roundings of the bounds.

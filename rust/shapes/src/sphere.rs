@@ -11,12 +11,12 @@ use raywright_base::math::{Affine, Bounded, DVec3, Frame, Number, Ray, Triple, a
 use raywright_base::sampling::warp::{UNIFORM_SPHERE_PDF, uniform_sphere};
 use std::f64::consts::{PI, TAU};
 
-/// All points at one distance from a centre; closed.
+/// All points at one distance from a center; closed.
 ///
 /// u is the longitude about +z from +x, in turns. v is the latitude from the pole at −z to that at +z, in half turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sphere {
-    /// Its centre.
+    /// Its center.
     pub center: DVec3,
     /// The radius, above 0.
     pub radius: f64,
@@ -49,7 +49,7 @@ impl Sphere {
         let x = u[0] * cone.height();
         let square = u[0] * cone.part * (2.0 - x);
         let facing = (1.0 - square).max(0.0).sqrt();
-        // The angle at the centre between reference point and sample: the incidence angle minus θ.
+        // The angle at the center between reference point and sample: the incidence angle minus θ.
         let cosine = (1.0 - x) * facing + square * cone.sine;
         let across = square.sqrt() * (1.0 - x - cone.sine * facing);
         let [sin, cos] = sin_cos_turn(u[1]);
@@ -60,7 +60,7 @@ impl Sphere {
         Seen { site: self.towards(direction), pdf: 1.0 / (TAU * cone.height()) }
     }
 
-    /// The point in a direction from the centre that is a unit vector to within 4 UNIT in each coordinate. The last sum
+    /// The point in a direction from the center that is a unit vector to within 4 UNIT in each coordinate. The last sum
     /// adds one UNIT.
     #[inline(always)]
     fn towards(&self, direction: DVec3) -> Site {
@@ -92,7 +92,7 @@ impl Sphere {
 
 /// The cone of directions that a sphere subtends from an outside point.
 struct Cone {
-    /// The unit vector from the centre to the reference point.
+    /// The unit vector from the center to the reference point.
     axis: DVec3,
     /// The sine of the half-angle.
     sine: f64,
@@ -111,7 +111,7 @@ impl Cone {
 impl Sphere {
     /// [`Solid::meets`] with one error bound for the whole formula ([`ball`]) in place of one per operation.
     ///
-    /// Let u = [`UNIT`] and w the rounded vector from the centre. Then d² errs by 3u of it, r² d² by 5u, w² by 5u, and
+    /// Let u = [`UNIT`] and w the rounded vector from the center. Then d² errs by 3u of it, r² d² by 5u, w² by 5u, and
     /// w · d by 4u |w| |d|. w × d errs by 3u of the magnitudes of its products, in all by 3√2 u |w| |d|. So its square
     /// errs by 3u of it and by 8.5u |w × d| |w| |d| + 18u² w² d² more. The bounds used here are greater by more than
     /// their own roundings, and, unless r² d² is tiny, by more than any underflow.
@@ -135,7 +135,7 @@ impl Sphere {
         let (b, c) = (w.dot(d), ww - rr);
         let q = root + b.abs();
         let q_error = root_error + 5.0 * UNIT * size + 2.0 * UNIT * q;
-        // The root farther from the line's origin and the nearer one, both as if the line went toward the centre.
+        // The root farther from the line's origin and the nearer one, both as if the line went toward the center.
         let (outer, inner) = (q / a, c / q);
         let outer_error = q_error / a * (1.0 + 8.0 * UNIT) + 6.0 * UNIT * outer;
         let inner_error = (6.0 * UNIT * (ww + rr) + inner.abs() * q_error) / (q - q_error) + 3.0 * UNIT * inner.abs();
@@ -263,7 +263,7 @@ impl Shape for Sphere {
 
     /// Uniform in the cone that the sphere subtends, or in all directions from inside.
     ///
-    /// From outside, the point is computed from the angle at the centre without a difference of large numbers (Pharr,
+    /// From outside, the point is computed from the angle at the center without a difference of large numbers (Pharr,
     /// Jakob, Humphreys, "Physically Based Rendering", 4th edition, 2023, section 6.2.4). The sphere may be arbitrarily
     /// small or distant.
     fn sight_from(&self, place: DVec3, u: [f64; 2]) -> Option<Seen> {

@@ -22,7 +22,7 @@ pub fn builder(u: &mut Unstructured) -> Result<Builder> {
     one_of(u, &all)
 }
 
-/// Any optimisers.
+/// Any optimizers.
 pub fn optimisers(u: &mut Unstructured) -> Result<Optimisers> {
     let mut some = vec![Optimiser::Reinsertion, Optimiser::Treelet];
     some.rotate_left(u.int_in_range(0..=1)?);

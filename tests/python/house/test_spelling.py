@@ -8,6 +8,8 @@ import pytest
 ROOT = Path(__file__).parents[3]
 FOLDERS = ("python", "docs", "benches", "examples", "tests/python", "tests/extending")
 PAGES = ("README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "noxfile.py", "Cargo.toml", "pyproject.toml")
+# Folders of Rust whose comments are still spelled the other way; identifiers are everywhere, in part.
+LEFT = ("rust/accel", "rust/render", "rust/integrators/src/wavefront")
 KINDS = {".py", ".md", ".js", ".wgsl", ".html", ".css", ".rs"}
 WORDS = (
     "behaviour", "cancelled", "cancelling", "catalogue", "centre", "centring", "colour", "favour",
@@ -33,6 +35,13 @@ def files():
     yield from (ROOT / page for page in PAGES)
 
 
+def comments(text):
+    """Return the comments of Rust code, without the code that they quote."""
+    found = (line.partition("//") for line in text.splitlines())
+    quoted = ("\n".join(after for before, _, after in found if before.count('"') % 2 == 0)).split("`")
+    return "".join(quoted[::2])
+
+
 def british(text):
     """Return the parts of words of a text that are spelled the British way."""
     text = text.lower()
@@ -50,6 +59,15 @@ def test_words_are_american():
         for path in files()
         if path != own and "_build" not in path.parts and (words := british(path.read_text(encoding="utf-8")))
     }
+    assert found == {}
+
+
+def test_comments_of_the_crates_are_american():
+    found = {}
+    for path in (ROOT / "rust").rglob("*.rs"):
+        name = path.relative_to(ROOT).as_posix()
+        if not name.startswith(LEFT) and (words := british(comments(path.read_text(encoding="utf-8")))):
+            found[name] = words
     assert found == {}
 
 

@@ -1,4 +1,4 @@
-"""Solid cones: exact shares of solid angles, and pictures of one cone a pixel."""
+"""Solid cones: exact shares of solid angles, and pictures of one cone per pixel."""
 
 import numpy as np
 import pytest
@@ -288,7 +288,7 @@ def test_cones_are_compared_with_distributed_rays():
     camera = rw.Camera((0, -4, 3), (0, 0, 0), up=(0, 0, 1), width=12, height=12)
     cones = look(scene, camera, rw.integrators.ConeTraced(), samples=2)
     rays = look(scene, camera, rw.integrators.Distributed(), samples=512)
-    # A small round lamp and a ball: soft shadows differ where one cone a pixel is shaded at one point.
+    # A small round lamp and a ball: soft shadows differ where one cone per pixel is shaded at one point.
     assert cones.error.estimate == 0
     assert cones.rgb.mean() == pytest.approx(rays.rgb.mean(), rel=5e-3)
     assert np.abs(cones.rgb - rays.rgb).max() < 0.03

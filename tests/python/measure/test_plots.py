@@ -183,8 +183,18 @@ def test_copies_keep_values_but_no_scene(plates, again):
 @pytest.mark.parametrize(
     ("values", "options", "error", "message"),
     [
-        (np.zeros(5), {}, ValueError, r"values must have shape \(12,\), one a face, or \(14,\), one a v.*"),
-        (np.zeros(5), {"points": np.zeros((4, 3))}, ValueError, r"values must have shape \(4,\), one a p.*"),
+        (
+            np.zeros(5),
+            {},
+            ValueError,
+            r"values must have shape \(12,\), one per face, or \(14,\), one per v.*",
+        ),
+        (
+            np.zeros(5),
+            {"points": np.zeros((4, 3))},
+            ValueError,
+            r"values must have shape \(4,\), one per p.*",
+        ),
         (["a"] * 12, {}, TypeError, r"values must be real numbers or bool, got .*"),
         (np.zeros(12), {"up": "w"}, ValueError, r"up must be one of 'x', 'y', 'z', got 'w'"),
         (

@@ -131,7 +131,7 @@ PICTURES = {
     ),
     "points.tif": (tiff(31623), POINTS_OF),
     "points.gif": (b"GIF89a" + struct.pack("<HH", 65535, 65535) + GIF_REST, POINTS_OF),
-    "noise.jpg": (bytes(range(256)), "it is no picture that Pillow knows"),
+    "noise.jpg": (bytes(range(256)), "it is not a picture that Pillow knows"),
     "points.exr": (exr(31623, 31623), "it has 31623 x 31623 points by its header, and 134217728 are read"),
     "most.exr": (exr(2**31 - 1, 2**31 - 1), "points by its header"),
     "row.exr": (exr(BILLION, 1), "it has 1000000000 x 1 points by its header"),

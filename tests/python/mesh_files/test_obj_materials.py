@@ -366,7 +366,7 @@ def test_pictures_that_cannot_be_shown_are_told(tmp_path):
         ("gone.png", "it is not beside the file"),
         ("/etc/hostname", "it is not beside the file"),
         ("", "it is not beside the file"),
-        ("noise.png", "it is no picture that Pillow knows"),
+        ("noise.png", "it is not a picture that Pillow knows"),
         ("many.npy", "it has shape (2, 2, 7"),
     ):
         assert material(tmp_path, f"{kd}map_Kd {name}", f"{lost}{name!r} ({why}) of 'it'") == matt

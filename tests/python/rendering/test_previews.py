@@ -1,4 +1,4 @@
-"""Previews: pictures of a ray and a shadow ray a pixel, beside the same in numpy."""
+"""Previews: pictures of a ray and a shadow ray per pixel, beside the same in numpy."""
 
 import doctest
 import signal

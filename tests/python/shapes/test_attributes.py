@@ -134,7 +134,7 @@ def test_meshes_with_values_compare_pickle_and_move():
         ({"vertex_attributes": {3: np.ones(8)}}, TypeError, "names of type str, got 3"),
         ({"vertex_attributes": [1, 2]}, TypeError, "must be a dict of arrays by name, got list"),
         ({"vertex_attributes": {"a": ["x"] * 8}}, TypeError, r"_attributes\['a'\] must be real numbers"),
-        ({"cells": [1, 2]}, ValueError, r"cells must have shape \(1,\), one number a face, got \(2,\)"),
+        ({"cells": [1, 2]}, ValueError, r"cells must have shape \(1,\), one number per face, got \(2,\)"),
         ({"cells": [-1]}, ValueError, "cells must be at least 0, got -1 of face 0"),
         ({"cells": [0.5]}, TypeError, "cells must be integers, got dtype float64"),
     ],

@@ -34,7 +34,7 @@ class RaycastingScene:
     Raises
     ------
     ValueError
-        If the device is no CPU.
+        If the device is not a CPU.
 
     See Also
     --------
@@ -291,7 +291,7 @@ class RaycastingScene:
         dict
             ``points`` and ``primitive_normals`` (..., 3) float32, ``primitive_uvs`` (..., 2) float32,
             ``geometry_ids`` and ``primitive_ids`` (...) uint32. Without any mesh, and for points that are
-            not finite, they are 0 and `INVALID_ID`.
+            not finite, coordinates are 0 and ids are `INVALID_ID`.
 
         Raises
         ------

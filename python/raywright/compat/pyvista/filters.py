@@ -51,7 +51,7 @@ def ray_trace(
     ValueError
         If an end is not 3 finite numbers.
     TypeError
-        If `mesh` is no pyvista.PolyData, or an end does not hold real numbers.
+        If `mesh` is not a pyvista.PolyData, or an end does not hold real numbers.
 
     See Also
     --------
@@ -109,7 +109,7 @@ def multi_ray_trace(
     ValueError
         If an array is not (n, 3), or the two differ in shape.
     TypeError
-        If `mesh` is no pyvista.PolyData, or an array does not hold real numbers.
+        If `mesh` is not a pyvista.PolyData, or an array does not hold real numbers.
 
     See Also
     --------
@@ -167,7 +167,7 @@ def select_interior_points(
     ValueError
         If `method` is none of these.
     TypeError
-        If `surface` is no pyvista.PolyData.
+        If `surface` is not a pyvista.PolyData.
 
     See Also
     --------

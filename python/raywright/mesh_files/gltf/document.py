@@ -52,8 +52,8 @@ class Document:
     Raises
     ------
     ValueError
-        If it is no such file, is cut short, needs an extension that is not known, or one of its files is
-        missing or outside of its folder.
+        If it is not a file of this kind, is cut short, needs an extension that is not known, or one of its
+        files is missing or outside of its folder.
     """
 
     def __init__(self, path: Path) -> None:

@@ -34,7 +34,7 @@ def placed(document: Document) -> list[Node]:
     Raises
     ------
     ValueError
-        If they are no tree, or a transform has no finite numbers.
+        If they do not form a tree, or a transform has no finite numbers.
     """
     parts = document.root.parts("nodes")
     children = [part.references("children", "nodes", len(parts)) for part in parts]

@@ -99,7 +99,7 @@ def _property(words: list[str]) -> Property:
 
 
 def _count(text: str) -> int:
-    # Longer numbers are no counts, and slow to parse.
+    # Longer numbers are not counts, and slow to parse.
     if not re.fullmatch(r"\d{1,18}", text, re.ASCII):
         raise ValueError(f"{text[:20]!r} is not a valid count")
     return int(text)

@@ -46,10 +46,10 @@ def read_gltf(path: str | PathLike[str], width: int | None = None, height: int |
     FileNotFoundError
         If the file is missing.
     ValueError
-        If it is no glTF file that can be read, is broken anywhere, needs an extension that is not supported,
-        names files outside of its folder, or holds no faces; or if a size is out of range.
+        If it is not a glTF file that can be read, is broken anywhere, needs an extension that is not
+        supported, names files outside of its folder, or holds no faces; or if a size is out of range.
     TypeError
-        If a size is no integer.
+        If a size is not an integer.
 
     Warns
     -----

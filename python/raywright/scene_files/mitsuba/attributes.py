@@ -60,7 +60,7 @@ def read_attribute(path: Path, name: str) -> tuple[bool, Floats]:
     Raises
     ------
     ValueError
-        If the file has no attribute of the name, or it is no color.
+        If the file has no attribute of the name, or it is not a color.
     """
     of, _, rest = name.partition("_")
     if of not in ("vertex", "face") or not rest:

@@ -77,7 +77,7 @@ def from_mitsuba(
         If something is not supported, or is malformed (the error gives plugin or line), or `weld` is negative
         or not finite.
     TypeError
-        If `scene` is no dict and no path, or `sensor` is no integer.
+        If `scene` is neither a dict nor a path, or `sensor` is not an integer.
 
     See Also
     --------

@@ -18,7 +18,7 @@ _MAGIC = 0x041C
 _NORMALS, _COORDINATES, _COLORS, _DOUBLE = 0x0001, 0x0002, 0x0008, 0x2000
 # Longest name to read.
 _LONGEST_NAME = 4096
-# Zeros inflate a thousandfold, so a file may claim any size; a larger one is no mesh.
+# Zeros inflate a thousandfold, so a file may claim any size; a larger one is not a mesh.
 _MOST = 2**33
 
 
@@ -44,7 +44,7 @@ def read_serialized(path: Path, index: int) -> Stored:
     Raises
     ------
     ValueError
-        If it is no such file, is of another version, is cut short, or has no such mesh.
+        If it is not a file of this kind, is of another version, is cut short, or has no such mesh.
     """
     data = path.read_bytes()
     try:

@@ -167,7 +167,7 @@ class Sampling(NamedTuple):
 def sampler(plugin: Plugin | None) -> Sampling:
     """Return a sampler if one is named, how many samples a pixel it takes, and its seed.
 
-    Independent samples are Mitsuba's default, and its exporters write them: they are no choice.
+    Independent samples are Mitsuba's default, and its exporters write them: they are not a choice.
     """
     if plugin is None:
         return Sampling()

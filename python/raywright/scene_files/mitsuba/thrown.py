@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 
 def size_of(plugin: Plugin) -> tuple[int, int]:
-    """Return the width and the height of a texture in points: one if it is no picture."""
+    """Return the width and the height of a texture in points: one if it is not a picture."""
     if plugin.type != "bitmap":
         return 1, 1
     array = picture(plugin)[0]

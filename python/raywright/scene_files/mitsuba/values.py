@@ -154,7 +154,7 @@ def _numbers(plugin: Plugin, name: str) -> NDArray[np.float64]:
 
 
 def _of_file(plugin: Plugin, path: Path) -> NDArray[np.float64]:
-    """Read a wavelength and a value a line; what begins with # is none."""
+    """Read lines of a wavelength and a value; lines that begin with # are comments."""
     lines = (line.split("#")[0].split() for line in path.read_text(encoding="utf-8").splitlines())
     try:
         table = np.array([[float(number) for number in line] for line in lines if line], np.float64)

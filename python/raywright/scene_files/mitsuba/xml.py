@@ -65,7 +65,7 @@ def read_xml(
     FileNotFoundError
         If the file, or one that it includes, is missing.
     ValueError
-        If it is no XML, has a DOCTYPE, or is not as Mitsuba's scenes are; the error gives the line. If a
+        If it is not XML, has a DOCTYPE, or is not as Mitsuba's scenes are; the error gives the line. If a
         parameter is asked for nowhere in it.
     """
     reader = _Reader({name: _text(value) for name, value in parameters.items()}, folder)
@@ -243,7 +243,7 @@ def elements(path: Path) -> Element:
     FileNotFoundError
         If the file is missing.
     ValueError
-        If it is no XML, has a DOCTYPE, or nests too deep.
+        If it is not XML, has a DOCTYPE, or nests too deep.
     """
     parser = expat.ParserCreate()
     open_ones: list[Element] = []

@@ -28,7 +28,7 @@ GLASS = {
 def color(parameters: Parameters, name: str, default: float | Triple, emits: bool = False) -> Triple:
     """Return a parameter that is one color.
 
-    Emission that is no rgb has a luminance of 1, as in pbrt.
+    Emission that is not given as rgb has a luminance of 1, as in pbrt.
     """
     found = parameters.take(name)
     if found is None:

@@ -89,7 +89,7 @@ def directives(path: Path, notes: Notes) -> Iterator[Directive]:
             texts.append(text.text)
         takes = name in _TEXTS and name not in ("Include", "Import", "NamedMaterial", "MediumInterface")
         given = _parameters(words) if takes else {}
-        # Notes appear once per kind of directive, and names chosen by the file are no kinds.
+        # Notes appear once per kind of directive, and names chosen by the file are not kinds.
         kind = "" if name.startswith("MakeNamed") else "".join(texts[-1:])
         parameters = Parameters(
             given, f"{where}: {' '.join((name, *texts))}", f"{name} {kind}".strip(), notes

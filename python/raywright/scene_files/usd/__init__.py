@@ -53,7 +53,7 @@ def read_usd(path: Path, width: int | None = None, height: int | None = None) ->
     FileNotFoundError
         If a file that it names is missing.
     ValueError
-        If it is no USD file that can be read, or holds nothing that is seen; the error names the prim.
+        If it is not a USD file that can be read, or holds nothing that is seen; the error names the prim.
 
     Warns
     -----

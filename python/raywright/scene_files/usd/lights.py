@@ -99,7 +99,7 @@ class Source:
         return float(self.reading.value(self.prim.GetAttribute(f"inputs:{name}"), default))
 
     def text(self, name: str) -> Any:
-        """Return an input of the light that is no number; None if it has none."""
+        """Return an input of the light that is not a number; None if it has none."""
         return self.reading.value(self.prim.GetAttribute(f"inputs:{name}"))
 
     @property

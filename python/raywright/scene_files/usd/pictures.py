@@ -29,7 +29,7 @@ class Pictures:
         FileNotFoundError
             If it is missing.
         ValueError
-            If it is no picture that can be read.
+            If it is not a picture that can be read.
         """
         name = str(asset.resolvedPath or asset.path)
         key = name, linear

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-/// Number of sampled pairs of neighbours.
+/// Number of sampled pairs of neighbors.
 const PAIRS: usize = 16;
 
-/// Return whether rays, given as origins and directions, are coherent: most neighbours start within a hundredth of
+/// Return whether rays, given as origins and directions, are coherent: most neighbors start within a hundredth of
 /// `extent` of each other, with directions less than 8 degrees apart. A few evenly spaced pairs are sampled. The answer
 /// affects speed only.
 pub fn is_coherent(count: usize, ray: impl Fn(usize) -> (DVec3, DVec3), extent: f64) -> bool {

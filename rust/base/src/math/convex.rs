@@ -1,7 +1,7 @@
 //! Convex polygons in 2D, and their intersections with lines and each other.
 //!
 //! A cut computes each intersection with the line once, for both parts. So the parts' areas add up to the whole to
-//! within rounding, and the parts of neighbours meet without a gap.
+//! within rounding, and the parts of neighbors meet without a gap.
 
 use super::DVec3;
 use glam::DVec2;

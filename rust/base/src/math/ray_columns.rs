@@ -1,4 +1,4 @@
-//! Rays and hits in SoA layout: any sixteen neighbours form vectors.
+//! Rays and hits in SoA layout: any sixteen neighbors form vectors.
 
 use super::{DVec3, Ray};
 

@@ -5,11 +5,11 @@
 //! many cells as a table holds. The rays are then sorted by cell with a counting sort. (Pharr, Kolb, Gershbein and
 //! Hanrahan, "Rendering Complex Scenes with Memory-Coherent Ray Tracing", 1997, queue rays by location.)
 //!
-//! Runs of four neighbours stay together: sorting single rays takes four times as long, and does not speed up tracing.
+//! Runs of four neighbors stay together: sorting single rays takes four times as long, and does not speed up tracing.
 
 use std::array::from_fn;
 
-/// Neighbours that stay together.
+/// Neighbors that stay together.
 pub const RUN: usize = 4;
 
 /// Maximum number of rays sorted together: some rows of a picture. (Half as many are traced up to a twentieth slower,

@@ -18,7 +18,7 @@ const TOGETHER: usize = 1;
 /// Maximum row length for tiling: a band of longer rows would be too much for one thread.
 const LONGEST: usize = 1 << 14;
 
-/// Neighbouring pixels of a row that are visited consecutively.
+/// Neighboring pixels of a row that are visited consecutively.
 #[derive(Clone, Copy, Debug)]
 pub struct Run {
     /// The position of the first pixel.
@@ -71,7 +71,7 @@ impl Tiling {
         });
     }
 
-    /// The same for `some` pixels, as runs of neighbours. Whole tiles are read line by line, as they lie in memory.
+    /// The same for `some` pixels, as runs of neighbors. Whole tiles are read line by line, as they lie in memory.
     #[inline(always)]
     pub fn runs(&self, from: usize, some: usize, count: usize, mut each: impl FnMut(Run)) {
         if self.row == 0 {

@@ -43,7 +43,7 @@ static FIELDS: [Field; Field::POLYNOMIALS.len()] = Field::ALL;
 /// It is i ↦ a·i + b in the field with as many elements, a ≠ 0, which takes any two elements to any two positions with
 /// equal probability. That suffices: the variance of a mean depends on pairs of samples only, so it is the same as for
 /// uniformly random permutations. Owen scrambling of the index (Burley, "Practical Hash-Based Owen Scrambling", 2020)
-/// preserves neighbours in all dimensions, which increases the error.
+/// preserves neighbors in all dimensions, which increases the error.
 #[inline(always)]
 pub(super) fn permute(size: BatchSize, index: u32, random: u64) -> u32 {
     let field = &FIELDS[size.bits() as usize];

@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn words_are_uniform_and_neighbours_independent() {
-        // Neighbours in each component: batch, dimension, number, sample.
+        // Neighbors in each component: batch, dimension, number, sample.
         let word = |i: u32, axis: u32| {
             let stream = Stream::new(Stream::words([9, 0], 4, if axis == 0 { i } else { 0 }));
             match axis {

@@ -40,7 +40,7 @@ fn each_number_is_uniform_over_seeds() {
 #[test]
 fn dimensions_are_independent_over_pixels() {
     for kind in [2, 16, 64].into_iter().flat_map(kinds) {
-        // Neighbours, a choice and its point, pairs that share bases, and a sum that a weak hash would reveal.
+        // Neighbors, a choice and its point, pairs that share bases, and a sum that a weak hash would reveal.
         for (first, second) in [(0, 1), (4, 5), (5, 6), (1, 9), (0, 8), (6, 1030)] {
             let (mut pairs, mut mixed, mut ones) = (vec![0; 256], vec![0; 256], vec![0; 256]);
             for pixel in 0..40_000 {

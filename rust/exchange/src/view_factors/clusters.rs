@@ -44,7 +44,7 @@ impl Cluster {
 }
 
 impl Clusters {
-    /// Build a tree of some faces, split at the median of the centre or normal coordinate with the greatest spread.
+    /// Build a tree of some faces, split at the median of the center or normal coordinate with the greatest spread.
     pub fn new(facets: &[Facet], of: Vec<u32>) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: of };
         if tree.order.is_empty() {

@@ -39,8 +39,8 @@ impl Rule {
         Self::new(&of)
     }
 
-    /// A symmetric rule given by orbits about the centre. Each has a weight and one or two of the barycentric
-    /// coordinates; with one, the other two are equal. The remaining weight is at the centre.
+    /// A symmetric rule given by orbits about the center. Each has a weight and one or two of the barycentric
+    /// coordinates; with one, the other two are equal. The remaining weight is at the center.
     fn of_orbits(pairs: &[[f64; 2]], triples: &[[f64; 3]]) -> Self {
         let mut of = Vec::with_capacity(MOST);
         for &[weight, a] in pairs {
@@ -196,7 +196,7 @@ impl Quadrature {
 
     fn by_rule(&mut self, rule: usize, one: &Facet, other: &Facet, [to_other, to_one]: [[f64; 3]; 2]) -> f64 {
         let (level, rule) = (self.level, &self.rules[rule]);
-        // In units of the distance, relative to the centre of `one`.
+        // In units of the distance, relative to the center of `one`.
         let unit = 1.0 / other.centre.distance(one.centre);
         let near = |facet: &Facet| facet.corners.map(|corner| (corner - one.centre) * unit);
         place(level, rule, &near(one), &to_one.map(|h| h * unit), &mut self.from);

@@ -13,7 +13,7 @@ pub struct Facet {
     pub area: f64,
     /// The mean of its corners.
     pub centre: DVec3,
-    /// The distance of the farthest corner from the centre.
+    /// The distance of the farthest corner from the center.
     pub radius: f64,
     /// The rounding error of its coordinates.
     noise: f64,

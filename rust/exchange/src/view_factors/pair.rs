@@ -42,7 +42,7 @@ impl Facing {
         before(quadrature, &self.facets[0], &self.facets[1], self.heights, MOST_CUTS)
     }
 
-    /// Return whether the distance of their centres is less than a multiple of the sum of their radii.
+    /// Return whether the distance of their centers is less than a multiple of the sum of their radii.
     pub fn is_within(&self, times: f64) -> bool {
         let [one, other] = &self.facets;
         one.centre.distance(other.centre) < times * (one.radius + other.radius)

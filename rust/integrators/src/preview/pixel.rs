@@ -37,7 +37,7 @@ impl Pixel for u8 {
     #[inline(always)]
     fn of([red, green, blue]: [f32; 3], encoder: Self::Encoder) -> [Self; 3] {
         let first = encoder.encode(red);
-        // Most of what is seen is grey.
+        // Most of what is seen is gray.
         if red == green && green == blue {
             return [first; 3];
         }

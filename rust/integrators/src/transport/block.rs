@@ -27,9 +27,9 @@ pub(super) struct Block<'a> {
     pub encounters: SurfaceInteractionLanes,
     pub receivers: LightContextLanes,
     pub throughput: RgbLanes,
-    /// Whether all of them are with what scatters by one diffuse colour.
+    /// Whether all of them are with what scatters by one diffuse color.
     pub is_diffuse: bool,
-    /// Those colours.
+    /// Those colors.
     pub reflectance: RgbLanes,
     /// Otherwise how each scatters, how wide its ray is, where light comes from by way of what is sharp, and whether
     /// roulette has been played.

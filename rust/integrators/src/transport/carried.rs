@@ -6,7 +6,7 @@ use raywright_scene::Footprint;
 /// What a path carries that few scenes need.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Carried {
-    /// How wide the bundle of neighbouring rays is at the ray's origin.
+    /// How wide the bundle of neighboring rays is at the ray's origin.
     pub footprint: Footprint,
     /// What the ray starts in.
     pub media: MediumStack,

@@ -65,7 +65,7 @@ pub(super) struct Settings {
     pub shadows: bool,
     /// Radiance that arrives from everywhere in place of what is not followed, where it is scattered diffusely.
     pub ambient: Rgb,
-    /// Paths end that contribute less than this, in any colour.
+    /// Paths end that contribute less than this, in any color.
     pub least: f64,
     /// Whether paths of a group share what they find, in scenes where they can ([`can_share`]).
     pub shares: bool,

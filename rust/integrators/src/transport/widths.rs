@@ -1,4 +1,4 @@
-//! How wide the bundle of neighbouring rays is along a path.
+//! How wide the bundle of neighboring rays is along a path.
 
 use super::block::Block;
 use super::worker::TransportWorker;

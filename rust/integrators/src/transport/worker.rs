@@ -102,7 +102,7 @@ impl<'a> TransportWorker<'a> {
         // A worker may be given samples of another seed or kind each time.
         block.numbers = SamplerLanes::new(&samples[0].sampler);
         for kind in 0..Plan::KINDS {
-            // To aim takes more than a colour.
+            // To aim takes more than a color.
             block.is_diffuse = kind == Plan::DIFFUSE && self.guide.is_none();
             let which = std::mem::take(&mut self.arrivals.kinds[kind]);
             for (number, some) in which.chunks(LANES).enumerate() {

@@ -4,7 +4,7 @@ use glam::Vec4;
 use std::fmt;
 
 /// Position of a variable in a table, and the weights of the four entries around it: a Catmull-Rom spline ("A Class of
-/// Local Interpolating Splines", 1974), whose slopes are secants of the neighbours. At an end, the missing neighbour is
+/// Local Interpolating Splines", 1974), whose slopes are secants of the neighbors. At an end, the missing neighbor is
 /// extrapolated by the parabola through the last three entries.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic {

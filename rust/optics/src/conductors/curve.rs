@@ -63,7 +63,7 @@ impl Curve {
         Self { values, lines, again: Rgb::new(factor(most[0]), factor(most[1]), factor(most[2])) }
     }
 
-    /// Reflectance of unpolarised light at a `cosine` of incidence, 0 to 1, in vacuum.
+    /// Reflectance of unpolarized light at a `cosine` of incidence, 0 to 1, in vacuum.
     #[inline]
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         let steps = cosine * Self::STEPS as f64;
@@ -77,7 +77,7 @@ impl Curve {
         sum(&self.lines, cosine, outside)
     }
 
-    /// RGB colour of a function of each wavelength's average reflectance.
+    /// RGB color of a function of each wavelength's average reflectance.
     pub fn seen(&self, of_mean: impl Fn(f64) -> f64) -> Rgb {
         self.lines.iter().map(|line| line.weight * of_mean(line.mean)).sum()
     }

@@ -109,7 +109,7 @@ impl FilmedMetal {
     /// Number of steps at which fringes become too dense to be visible.
     pub const MOST: f64 = FARTHEST / Self::WAY;
 
-    /// Reflectance of unpolarised light at a `cosine` of incidence, 0 to 1.
+    /// Reflectance of unpolarized light at a `cosine` of incidence, 0 to 1.
     pub fn reflectance(&self, cosine: f64) -> Rgb {
         let steps = cosine.clamp(0.0, 1.0).sqrt() * FilmedCurve::STEPS as f64;
         let before = (steps as usize).clamp(1, FilmedCurve::STEPS - 2) - 1;

@@ -36,7 +36,7 @@ impl Reflectance {
         if outside == 1.0 { Self::Metal(metal.curve()) } else { Self::Within(metal.curve(), outside) }
     }
 
-    /// Reflectance of unpolarised light at a `cosine` of incidence, 0 to 1.
+    /// Reflectance of unpolarized light at a `cosine` of incidence, 0 to 1.
     #[inline]
     pub fn at(&self, cosine: f64) -> Rgb {
         match self {

@@ -5,7 +5,7 @@ use crate::{Rgb, fresnel};
 use raywright_base::math::DVec3;
 
 impl Look {
-    /// Colour of the diffuse part between two directions above, relative to the mean over azimuths at the same
+    /// Color of the diffuse part between two directions above, relative to the mean over azimuths at the same
     /// elevations.
     ///
     /// This is Burley's diffuse reflection, partly flattened, over its mean over azimuths. So it has the same
@@ -30,7 +30,7 @@ impl Look {
         (self.base_color * (1.0 - cloth) + self.sheen_color() * cloth) * ((a + retro * (b + retro * c)) / mean)
     }
 
-    /// Colour of the sheen: white, or the base colour normalised to its greatest channel.
+    /// Color of the sheen: white, or the base color normalized to its greatest channel.
     #[inline(always)]
     fn sheen_color(&self) -> Rgb {
         let greatest = self.base_color.max();

@@ -17,7 +17,7 @@ use std::f64::consts::FRAC_1_PI;
 /// Losses of metal facets are compensated (Kulla and Conty, 2017). The base gets the light that facets above transmit,
 /// (1 − R(wo)) (1 − R(wi)) / (π (1 − R̄)), and distributes it over azimuths like Burley's. The clear dielectric is
 /// [`Dielectric`]. A coat with reflectance E(ω), k at most, transmits 1 − k to the layer below. The rest is scattered
-/// diffusely in the base colour, (k − E(wo)) (k − E(wi)) / (π (k − Ē)). Everything is reciprocal, and white if the base
+/// diffusely in the base color, (k − E(wo)) (k − E(wi)) / (π (k − Ē)). Everything is reciprocal, and white if the base
 /// is.
 ///
 /// An opaque surface is the same on both sides.
@@ -118,7 +118,7 @@ impl LayeredPrincipled {
         DielectricShares::new(&self.look, self.look.roughness, self.eta.max(1.0 / self.eta))
     }
 
-    /// The clear dielectric. Its transmission has the square root of the base colour, because light crosses two
+    /// The clear dielectric. Its transmission has the square root of the base color, because light crosses two
     /// surfaces.
     #[inline(always)]
     fn clear(&self) -> Tinted<Dielectric> {

@@ -120,7 +120,7 @@ fn light_can_go_either_way() {
             for (bsdf, eta) in
                 [(&metal, 1.0), (&glass, 1.6f64), (&sheet, 1.0), (&layered, 1.0), (&clear, 1.6), (&thin, 1.0)]
             {
-                // Coats and colours of glass are on its front only. On the back only its facets reflect, and both
+                // Coats and colors of glass are on its front only. On the back only its facets reflect, and both
                 // directions of a reflection are on the same side.
                 let square = |w: DVec3| if w.z > 0.0 { 1.0 } else { eta * eta };
                 let there = bsdf.evaluate(a, b).0 * (a.z.abs() / square(a));
@@ -168,7 +168,7 @@ fn draws_are_as_dense_as_they_say() {
     }
 }
 
-/// With a coloured base no channel gains energy, from tints or sheen.
+/// With a colored base no channel gains energy, from tints or sheen.
 #[test]
 fn colours_gain_nothing() {
     for (base_color, specular_tint) in

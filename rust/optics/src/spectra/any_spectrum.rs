@@ -6,7 +6,7 @@ use super::{Illuminant, Response, Smooth, Table, Waves};
 /// A spectrum; that of light is relative to daylight.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
-    /// The smooth spectrum of a colour.
+    /// The smooth spectrum of a color.
     Smooth(Smooth),
     /// A tabulated spectrum.
     Table(Table),
@@ -31,7 +31,7 @@ impl Spectrum {
         }
     }
 
-    /// Its colour in linear Rec. 709.
+    /// Its color in linear Rec. 709.
     pub fn seen(&self) -> Rgb {
         Response::new(Illuminant::Daylight, 1).seen(|nm| self.at(nm))
     }

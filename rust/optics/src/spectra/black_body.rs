@@ -20,7 +20,7 @@ pub const COLDEST: f64 = 500.0;
 /// Highest temperature in the table.
 const HOTTEST: f64 = 50_000.0;
 
-/// Colour of [`black_body`] in linear Rec. 709; negative channels are clamped to 0.
+/// Color of [`black_body`] in linear Rec. 709; negative channels are clamped to 0.
 pub fn black_body_colour(kelvin: f64) -> Rgb {
     if kelvin.is_nan() || kelvin < COLDEST {
         return Rgb::ZERO;

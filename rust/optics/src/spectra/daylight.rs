@@ -15,7 +15,7 @@ pub fn daylight(wavelength: f64) -> f64 {
     POWER[before] + (POWER[before + 1] - POWER[before]) * (steps - before as f64)
 }
 
-/// Daylight normalised to luminance 1, which is that of light with power 1 at all wavelengths.
+/// Daylight normalized to luminance 1, which is that of light with power 1 at all wavelengths.
 #[inline]
 pub fn white(wavelength: f64) -> f64 {
     daylight(wavelength) / *MEAN

@@ -4,7 +4,7 @@ use super::observer_table::RESPONSE;
 use super::{FIRST, LAST};
 use glam::DVec3;
 
-/// Colour-matching functions x̄, ȳ and z̄ of the CIE's standard observer of 1931, for a field of 2 degrees (CIE
+/// Color-matching functions x̄, ȳ and z̄ of the CIE's standard observer of 1931, for a field of 2 degrees (CIE
 /// 018:2019, table 6, every nm; linear between). Zero outside the visible range.
 #[inline]
 pub fn matching(wavelength: f64) -> DVec3 {

@@ -21,7 +21,7 @@ pub fn xyz_of_primaries() -> DMat3 {
     PRIMARIES * DMat3::from_diagonal(PRIMARIES.inverse() * (white / white.y))
 }
 
-/// Converts CIE X, Y and Z to linear Rec. 709, where daylight with Y = 1 is (1, 1, 1). Colours outside the gamut have a
+/// Converts CIE X, Y and Z to linear Rec. 709, where daylight with Y = 1 is (1, 1, 1). Colors outside the gamut have a
 /// negative channel, and possibly another above 1.
 pub fn xyz_to_rgb(xyz: DVec3) -> Rgb {
     static MATRIX: LazyLock<DMat3> = LazyLock::new(|| xyz_of_primaries().inverse());

@@ -1,4 +1,4 @@
-//! Conversion of spectra to colours.
+//! Conversion of spectra to colors.
 
 use super::super::Rgb;
 use super::{FIRST, LAST, daylight, matching, xyz_to_rgb};
@@ -47,7 +47,7 @@ impl Response {
         self.weights.iter().enumerate().map(|(i, &weight)| (FIRST + self.step * i as f64, weight))
     }
 
-    /// Colour of a spectrum.
+    /// Color of a spectrum.
     pub fn seen(&self, spectrum: impl Fn(f64) -> f64) -> Rgb {
         self.weights().map(|(wavelength, weight)| weight * spectrum(wavelength)).sum()
     }
@@ -76,7 +76,7 @@ mod tests {
             // X = Y = Z = 1 by the matrix of IEC 61966-2-1.
             let even = Response::new(Illuminant::Even, step).seen(|_| 1.0);
             assert!((even - Rgb::new(1.2048, 0.9484, 0.9088)).abs().max() < 2e-3, "{even}");
-            // Daylight has the same colour, whether as a spectrum or as the illuminant.
+            // Daylight has the same color, whether as a spectrum or as the illuminant.
             let day = Response::new(Illuminant::Even, step).seen(daylight);
             assert!((day / day[1] - Rgb::ONE).abs().max() < if step == 1 { 1e-13 } else { 2e-3 }, "{day}");
         }

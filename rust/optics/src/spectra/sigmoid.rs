@@ -1,4 +1,4 @@
-//! Smooth spectra of RGB colours.
+//! Smooth spectra of RGB colors.
 
 use super::super::Rgb;
 use super::{FIRST, Illuminant, LAST, Response, Waves};
@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 use raywright_base::parallel;
 use std::sync::LazyLock;
 
-/// The physical quantity of a colour.
+/// The physical quantity of a color.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// A reflectance: no wavelength exceeds 1 if no channel does.
@@ -15,12 +15,12 @@ pub enum Role {
     Amount,
 }
 
-/// A spectrum that has a given colour under daylight: a scaled sigmoid of a polynomial of degree 2 (Jakob and Hanika,
-/// "A Low-Dimensional Function Space for Efficient Spectral Upsampling", 2019). A grey colour has exactly the same
+/// A spectrum that has a given color under daylight: a scaled sigmoid of a polynomial of degree 2 (Jakob and Hanika,
+/// "A Low-Dimensional Function Space for Efficient Spectral Upsampling", 2019). A gray color has exactly the same
 /// value at all wavelengths.
 ///
-/// The sigmoid is that of the colour scaled to a greatest channel of one half, which keeps it smooth. For a reflectance
-/// above one half, it is that of the colour itself.
+/// The sigmoid is that of the color scaled to a greatest channel of one half, which keeps it smooth. For a reflectance
+/// above one half, it is that of the color itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Smooth {
     scale: f64,
@@ -30,7 +30,7 @@ pub struct Smooth {
 }
 
 impl Smooth {
-    /// The spectrum of a non-negative colour.
+    /// The spectrum of a non-negative color.
     pub fn of(colour: Rgb, role: Role) -> Self {
         match Normal::of(colour, role) {
             Ok(Normal { scale, colour, .. }) => {
@@ -71,7 +71,7 @@ impl Smooth {
     }
 }
 
-/// A colour whose greatest channel is between [`LEAST`] and 1, and a scale.
+/// A color whose greatest channel is between [`LEAST`] and 1, and a scale.
 struct Normal {
     scale: f64,
     colour: Rgb,
@@ -79,18 +79,18 @@ struct Normal {
     greatest: usize,
 }
 
-/// Greatest channel of the darkest colours with a sigmoid of their own.
+/// Greatest channel of the darkest colors with a sigmoid of their own.
 const LEAST: f64 = 0.5;
 
-/// Greatest channel of the brightest such colours; beyond it, sigmoids of nearly white colours become arbitrarily
+/// Greatest channel of the brightest such colors; beyond it, sigmoids of nearly white colors become arbitrarily
 /// steep.
 const MOST: f64 = 0.98;
 
 impl Normal {
-    /// Normalises a colour; the error is the flat spectrum of a grey.
+    /// Normalizes a color; the error is the flat spectrum of a gray.
     fn of(colour: Rgb, role: Role) -> Result<Self, Smooth> {
         let (most, least) = (colour.max(), colour.min());
-        // Rounding makes sums of greys slightly coloured.
+        // Rounding makes sums of grays slightly colored.
         if most - least <= 1e-12 * most {
             return Err(Smooth { scale: most, polynomial: None });
         }
@@ -129,7 +129,7 @@ fn every(step: u32) -> MatchedWavelengths {
     all.weights().map(|(wavelength, weight)| (wavelength, DVec3::from_array(weight.to_array()))).collect()
 }
 
-/// Colour of a polynomial's sigmoid, and its derivatives by the coefficients.
+/// Color of a polynomial's sigmoid, and its derivatives by the coefficients.
 fn seen(polynomial: DVec3, by: &MatchedWavelengths) -> (DVec3, DMat3) {
     let (mut colour, mut slopes) = (DVec3::ZERO, DMat3::ZERO);
     for &(wavelength, weight) in by {
@@ -145,7 +145,7 @@ fn seen(polynomial: DVec3, by: &MatchedWavelengths) -> (DVec3, DMat3) {
     (colour, slopes)
 }
 
-/// Fits the polynomial of a colour that is not grey, starting from a nearby one or from grey.
+/// Fits the polynomial of a color that is not gray, starting from a nearby one or from gray.
 fn fit(colour: Rgb, near: Option<DVec3>) -> DVec3 {
     let target = DVec3::from_array(colour.to_array());
     let Some(near) = near else {
@@ -160,7 +160,7 @@ fn fit(colour: Rgb, near: Option<DVec3>) -> DVec3 {
     approach(near, target, &COARSE)
 }
 
-/// Moves a polynomial towards a target colour, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963).
+/// Moves a polynomial towards a target color, by damped Gauss-Newton steps (Levenberg 1944, Marquardt 1963).
 fn approach(mut polynomial: DVec3, target: DVec3, by: &MatchedWavelengths) -> DVec3 {
     let mut damping = 1e-4;
     let (mut colour, mut slopes) = seen(polynomial, by);
@@ -197,7 +197,7 @@ fn approach(mut polynomial: DVec3, target: DVec3, by: &MatchedWavelengths) -> DV
     polynomial
 }
 
-/// Polynomials of normalised colours: by the index of the greatest channel, its value, and the ratios of the next two
+/// Polynomials of normalized colors: by the index of the greatest channel, its value, and the ratios of the next two
 /// channels to it.
 struct SigmoidTable(Vec<DVec3>);
 
@@ -211,7 +211,7 @@ static TABLE: LazyLock<SigmoidTable> = LazyLock::new(|| {
         // Denser towards the brightest, whose polynomials grow fastest.
         let level = MOST - (MOST - LEAST) * (1.0 - level as f64 / (LEVELS - 1) as f64).powi(2);
         let share = |i: usize| i as f64 / (SHARES - 1) as f64;
-        // From grey on, each entry starts from its neighbour.
+        // From gray on, each entry starts from its neighbor.
         let mut row: Vec<DVec3> = Vec::with_capacity(SHARES);
         for third in (0..SHARES).rev() {
             let mut colour = [level; 3];

@@ -43,8 +43,8 @@ impl Waves {
         Rgb::from_array(self.0.map(f))
     }
 
-    /// Converts radiance at the wavelengths to linear Rec. 709. Its expectation is the colour of the spectrum. A single
-    /// sample has the colour of its wavelengths, which is negative in some channels.
+    /// Converts radiance at the wavelengths to linear Rec. 709. Its expectation is the color of the spectrum. A single
+    /// sample has the color of its wavelengths, which is negative in some channels.
     #[inline]
     pub fn seen(&self, light: Rgb) -> Rgb {
         let of = |lane: usize| DRAWN.colours[cell(self.0[lane])] * light[lane];
@@ -69,13 +69,13 @@ impl Waves {
 struct Drawn {
     /// Cumulative probabilities, ending with 1.
     before: Vec<f64>,
-    /// Colour of each nm over the density of three samples.
+    /// Color of each nm over the density of three samples.
     colours: Vec<Rgb>,
 }
 
 static DRAWN: LazyLock<Drawn> = LazyLock::new(|| {
     let seen: Vec<Rgb> = Response::new(Illuminant::Daylight, 1).weights().map(|(_, weight)| weight).collect();
-    // Minimises the sum of the channels' variances for white light.
+    // Minimizes the sum of the channels' variances for white light.
     let wanted: Vec<f64> = seen.iter().map(|colour| colour.dot(*colour).sqrt()).collect();
     let all: f64 = wanted.iter().sum();
     let mut before = vec![0.0];

@@ -3,7 +3,7 @@
 use super::Complex;
 use std::f64::consts::TAU;
 
-/// Reflectance and transmittance of a film between two media at one wavelength, for light polarised perpendicular (s)
+/// Reflectance and transmittance of a film between two media at one wavelength, for light polarized perpendicular (s)
 /// and parallel (p) to the plane of incidence: the sum over all reflections within the film (Airy, 1833; Born and Wolf,
 /// "Principles of Optics", 7.6 and 1.6).
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,7 @@ impl Airy {
     }
 }
 
-/// Reflectance of unpolarised light, with the arguments of [`Airy::new`].
+/// Reflectance of unpolarized light, with the arguments of [`Airy::new`].
 pub fn reflectance(wavelength: f64, cosine: f64, thickness: f64, outside: f64, film: f64, base: Complex) -> f64 {
     let [s, p] = Airy::new(wavelength, cosine, thickness, outside, film, base).reflectance;
     (0.5 * (s + p)).min(1.0)

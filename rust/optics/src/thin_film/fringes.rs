@@ -14,7 +14,7 @@ const STEP: f64 = 4.0;
 /// Number of entries up to one beyond [`FARTHEST`], and one before 0.
 const COUNT: usize = (FARTHEST / STEP) as usize + 4;
 
-/// Colour of daylight modulated by cos(2π x / λ), or by sin(2π x / λ), at each wavelength λ, for a path difference x:
+/// Color of daylight modulated by cos(2π x / λ), or by sin(2π x / λ), at each wavelength λ, for a path difference x:
 /// Fourier transforms of the eye's response to daylight (Belcour and Barla, "A Practical Extension to Microfacet Theory
 /// for the Modeling of Varying Iridescence", 2017). They use the weights at every nm, as all spectra do. Cubic
 /// interpolation has an error of at most 1e-6.
@@ -34,7 +34,7 @@ static FRINGES: LazyLock<[Vec<Rgb>; 2]> = LazyLock::new(|| {
     all
 });
 
-/// Colours of the cosine and the sine, for a non-negative path difference in nm.
+/// Colors of the cosine and the sine, for a non-negative path difference in nm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fringes {
     cosines: &'static [Rgb],
@@ -49,13 +49,13 @@ impl Fringes {
         Self { cosines, sines }
     }
 
-    /// Colour of the cosine.
+    /// Color of the cosine.
     #[inline]
     pub fn cosine(&self, behind: f64) -> Rgb {
         if behind < FARTHEST { between(self.cosines, behind) } else { Rgb::ZERO }
     }
 
-    /// Colours of the cosine and of the sine.
+    /// Colors of the cosine and of the sine.
     #[inline]
     pub fn both(&self, behind: f64) -> [Rgb; 2] {
         if behind < FARTHEST { [between(self.cosines, behind), between(self.sines, behind)] } else { [Rgb::ZERO; 2] }

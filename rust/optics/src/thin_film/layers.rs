@@ -1,4 +1,4 @@
-//! Interference colours of films.
+//! Interference colors of films.
 
 use super::fringes::{FARTHEST, Fringes};
 use super::{Complex, reflectance};
@@ -11,19 +11,19 @@ use std::sync::LazyLock;
 static LINES: LazyLock<[Vec<(f64, Rgb)>; 2]> =
     LazyLock::new(|| [1, 2].map(|step| Response::new(Illuminant::Daylight, step).weights().collect()));
 
-/// Maximum number of internal reflections summed by colour; if more are needed, the sum is by wavelength.
+/// Maximum number of internal reflections summed by color; if more are needed, the sum is by wavelength.
 const TERMS: i32 = 64;
 
 /// Bound on the contribution of reflections that are left out.
 const LEAST: f64 = 1e-7;
 
-/// Colour of a film's reflection of unpolarised daylight, in linear Rec. 709 with a perfect reflector at (1, 1, 1),
+/// Color of a film's reflection of unpolarized daylight, in linear Rec. 709 with a perfect reflector at (1, 1, 1),
 /// integrated over wavelengths. Out of gamut, a channel may be negative by some thousandths, or exceed 1. `thickness`
 /// is in nm, and light arrives through a medium of index `from` at a `cosine` of incidence, 0 to 1. Indices do not
 /// depend on the wavelength.
 ///
 /// The transmittance at wavelength λ is T₀ / (1 + 2ρ cos δ + ρ²). Its phase is δ = 2π x / λ for a path difference x = 2
-/// d n cos θ. It equals T₀ / (1 − ρ²) times 1 + 2 Σ (−ρ)ᵐ cos mδ. So the colour is a sum over m of fringe colours, from
+/// d n cos θ. It equals T₀ / (1 − ρ²) times 1 + 2 Σ (−ρ)ᵐ cos mδ. So the color is a sum over m of fringe colors, from
 /// tables that all films share. Its error is below 1e-5 up to path differences of 16 µm. Beyond 48 µm fringes are
 /// assumed invisible; for thicker films the error is below 0.0026 ρ.
 pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) -> Rgb {
@@ -42,7 +42,7 @@ pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) ->
         });
     }
     let (within, beyond) = (within.sqrt(), beyond.sqrt());
-    // For each polarisation, the reflection of near and far face, and the transmission of both.
+    // For each polarization, the reflection of near and far face, and the transmission of both.
     let faces = |[a, b, c]: [f64; 3]| {
         let (near, far) = (a + b, b + c);
         let through = [4.0 * (a / near) * (b / near), 4.0 * (b / far) * (c / far)];
@@ -54,7 +54,7 @@ pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) ->
     if takes_many(&all, behind) {
         return by_wavelength(&LINES[0], reflected(&all, behind));
     }
-    // Each polarisation carries half of the light.
+    // Each polarization carries half of the light.
     let mut waves = all.map(|faces| 0.5 * faces.mean());
     let mut seen = Rgb::splat(1.0 - (waves[0] + waves[1]));
     let fringes = Fringes::get();
@@ -69,7 +69,7 @@ pub fn on_dielectric(thickness: f64, [from, film, to]: [f64; 3], cosine: f64) ->
     seen
 }
 
-/// Colour of a film on a conductor with index of refraction η + ik per channel. Each channel is that of a conductor
+/// Color of a film on a conductor with index of refraction η + ik per channel. Each channel is that of a conductor
 /// with its index at all wavelengths. Light arrives through a medium of index `outside`.
 pub fn on_conductor(thickness: f64, [outside, film]: [f64; 2], (eta, k): (Rgb, Rgb), cosine: f64) -> Rgb {
     let first = outside * cosine;
@@ -124,7 +124,7 @@ pub fn on_conductor(thickness: f64, [outside, film]: [f64; 2], (eta, k): (Rgb, R
 /// An index of refraction beyond which everything is a mirror, and powers do not overflow.
 const HIGHEST: f64 = 1e40;
 
-/// The faces of a film, for one polarisation.
+/// The faces of a film, for one polarization.
 #[derive(Clone, Copy)]
 struct Faces {
     /// Product of both reflection coefficients: ρ with a phase.
@@ -170,7 +170,7 @@ fn over(part: f64, whole: f64) -> f64 {
     if part > 0.0 { part / whole } else { 0.0 }
 }
 
-/// Returns whether more internal reflections are needed than are summed by colour. Each is smaller than the previous
+/// Returns whether more internal reflections are needed than are summed by color. Each is smaller than the previous
 /// one by the product of both reflection coefficients, and has an additional path difference `behind`.
 fn takes_many(all: &[Faces; 2], behind: f64) -> bool {
     let greatest = all.map(|faces| faces.both.square()).into_iter().fold(0.0, f64::max).sqrt();
@@ -181,7 +181,7 @@ fn takes_many(all: &[Faces; 2], behind: f64) -> bool {
     behind < FARTHEST / 3.0 && greatest.powi((FARTHEST / behind) as i32) > 5e-3
 }
 
-/// Colour of a spectrum.
+/// Color of a spectrum.
 #[cold]
 fn by_wavelength(lines: &[(f64, Rgb)], spectrum: impl Fn(f64) -> f64) -> Rgb {
     lines.iter().map(|&(wavelength, weight)| weight * spectrum(wavelength)).sum()
@@ -267,7 +267,7 @@ mod tests {
             assert!((metal - fresnel::conductor(cosine, eta, k)).abs().max() < 1e-6);
         }
         assert!(on_dielectric(5.0, [1.0, 1.33, 1.0], 1.0).max() < 1e-3);
-        // A thick film is a plate without colours, 2r / (1 + r).
+        // A thick film is a plate without colors, 2r / (1 + r).
         let plate = Rgb::splat(0.0393296977138936);
         assert!((on_dielectric(1e9, [1.0, 1.33, 1.0], 1.0) - plate).abs().max() < 1e-9);
     }

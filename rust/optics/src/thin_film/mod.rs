@@ -1,7 +1,7 @@
 //! Interference of thin films, about as thick as a wavelength of light.
 //!
 //! Reflections from both faces of a film interfere by their path difference: Airy's sum over all reflections within the
-//! film. `airy` evaluates it at one wavelength exactly. `layers` evaluates its colour, integrated over wavelengths, on
+//! film. `airy` evaluates it at one wavelength exactly. `layers` evaluates its color, integrated over wavelengths, on
 //! bases with a constant index of refraction. It uses tables of `fringes` that all such films share.
 
 mod airy;

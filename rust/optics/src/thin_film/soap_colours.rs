@@ -1,4 +1,4 @@
-//! Colours of soap films for the CIE's observer.
+//! Colors of soap films for the CIE's observer.
 
 use super::reflectance;
 use crate::spectra::matching;

@@ -64,7 +64,7 @@ pub trait Camera: Debug + Send + Sync {
         self.body().moves()
     }
 
-    /// Returns the camera as a pinhole at rest, whose primary hits can be rasterised; `None` for other cameras.
+    /// Returns the camera as a pinhole at rest, whose primary hits can be rasterized; `None` for other cameras.
     fn as_perspective(&self) -> Option<&Perspective> {
         None
     }
@@ -112,7 +112,7 @@ pub struct Spread {
     pub width: f64,
 }
 
-/// Normalises a vector without overflow or underflow; returns `None` for zero.
+/// Normalizes a vector without overflow or underflow; returns `None` for zero.
 fn unit(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     (largest > 0.0).then(|| (v / largest).normalize())

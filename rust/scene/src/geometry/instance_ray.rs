@@ -102,7 +102,7 @@ impl<'a> InstanceRay<'a> {
             if told.is_some() {
                 return told;
             }
-            // The hit is near an end, where a neighbouring hit may be inside the ends instead.
+            // The hit is near an end, where a neighboring hit may be inside the ends instead.
             let last = hit.t + 2.0 * self.room(hit.t);
             let near = self.met(&Ray { t_min: hit.t, t_max: last.min(ray.t_max), ..ray });
             let first = near.filter_map(|(hit, _)| Some((hit.t, self.told(&hit, Contact::Inside)?)));

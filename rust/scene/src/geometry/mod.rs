@@ -56,7 +56,7 @@ pub struct Mesh {
     pub normals: Option<Vec<Vec3>>,
     /// Texture coordinates, a pair per vertex.
     pub uvs: Option<Vec<[f32; 2]>>,
-    /// Colours, one per vertex.
+    /// Colors, one per vertex.
     pub colours: Option<Vec<[f32; 3]>>,
 }
 
@@ -148,7 +148,7 @@ pub struct Geometry {
     normals: PerVertex<Vec3>,
     /// Texture coordinates.
     uvs: PerVertex<[f32; 2]>,
-    /// Colours.
+    /// Colors.
     colours: PerVertex<[f32; 3]>,
     /// The first primitive of each shape, and the total number at the end.
     first: Vec<u32>,
@@ -568,7 +568,7 @@ impl Geometry {
         self.uvs.of(self.face(primitive)).filter(|corners| !corners.as_flattened().iter().any(|x| x.is_nan()))
     }
 
-    /// Colours of a triangle's corners, if it has any.
+    /// Colors of a triangle's corners, if it has any.
     fn colours_of(&self, primitive: u32) -> Option<[[f32; 3]; 3]> {
         self.colours.of(self.face(primitive))
     }

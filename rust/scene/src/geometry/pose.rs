@@ -1,7 +1,7 @@
 //! Pose of an instance: the map from a prototype's space to its parent space, applied to rays and points.
 //!
 //! A ray enters the prototype's space by a matrix `M` and the map's translation `s`: `o' = M (o − s)`, `d' = M d`. The
-//! direction is not normalised, so `t` is the same in both spaces to within rounding. `M` is the inverse of the map's
+//! direction is not normalized, so `t` is the same in both spaces to within rounding. `M` is the inverse of the map's
 //! linear part `L`, rounded once. The transformed ray decides the hit; its `t` is then recomputed with `L`
 //! ([`super::instance_ray`]).
 //!
@@ -183,7 +183,7 @@ impl Pose {
     /// Derivatives of a unit normal in the parent space, from those in the prototype's space.
     fn turning(&self, normal: DVec3, dn: [DVec3; 2]) -> [DVec3; 2] {
         let across = |n: DVec3| self.inverse[0] * n.x + self.inverse[1] * n.y + self.inverse[2] * n.z;
-        // Derivative of a normalised vector: the mapped derivative without its component along the normal, over the
+        // Derivative of a normalized vector: the mapped derivative without its component along the normal, over the
         // mapped normal's length.
         let outside = across(normal);
         let length = outside.length();

@@ -1,4 +1,4 @@
-//! Shading data of hits: derivatives, texture coordinates, colours and local position.
+//! Shading data of hits: derivatives, texture coordinates, colors and local position.
 
 use super::Geometry;
 use crate::textures::{Needs, TexturePoint};
@@ -76,7 +76,7 @@ impl Geometry {
     fn turning(&self, primitive: u32, uv: [f64; 2], unit: DVec3) -> [DVec3; 2] {
         let Some([a, b, c]) = self.normals_of(primitive) else { return [DVec3::ZERO; 2] };
         let sum = a * (1.0 - uv[0] - uv[1]) + b * uv[0] + c * uv[1];
-        // Negated if the shading normal was. Normalisation removes the component along the normal.
+        // Negated if the shading normal was. Normalization removes the component along the normal.
         let length = sum.dot(unit);
         if length == 0.0 {
             return [DVec3::ZERO; 2];

@@ -65,7 +65,7 @@ impl LightTree {
         assert!(lights.len() < LEAF as usize / WIDTH, "fewer than 2^28 lights");
         let all = || (0u32..).zip(lights).filter_map(|(light, bounds)| bounds.map(|bounds| (light, bounds)));
         let greatest = all().map(|(_, bounds)| bounds.intensity).fold(0.0, f64::max);
-        // Normalised by the greatest, so that no importance overflows.
+        // Normalized by the greatest, so that no importance overflows.
         let item = |(light, bounds): (u32, LightBounds)| {
             let bounds = LightBounds { intensity: bounds.intensity / greatest, ..bounds };
             Item { bounds, centre: bounds.centre(), light }

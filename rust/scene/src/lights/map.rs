@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// last row is extended. A cell between four centers is sampled by its flux, and a point in the cell by the
 /// interpolated radiance. The sampling is exact horizontally. Vertically the density is linear between the products of
 /// radiance and sine of the colatitude at both ends. So radiance over density varies by a small factor within a cell,
-/// and by colour, and no bright texel has a density that ignores it.
+/// and by color, and no bright texel has a density that ignores it.
 #[derive(Clone, Debug)]
 pub struct EnvironmentMap {
     picture: Arc<Picture>,
@@ -32,7 +32,7 @@ pub struct EnvironmentMap {
 }
 
 impl EnvironmentMap {
-    /// Creates a map from a picture. Its radiance, W·sr⁻¹·m⁻², is `scale` times the colours, rotated into the world by
+    /// Creates a map from a picture. Its radiance, W·sr⁻¹·m⁻², is `scale` times the colors, rotated into the world by
     /// an orthonormal matrix of three rows.
     pub fn new(picture: Arc<Picture>, to_world: [DVec3; 3], scale: f64) -> Self {
         let to_picture = [0, 1, 2].map(|i| DVec3::from_array(to_world.map(|row| row[i])));
@@ -59,7 +59,7 @@ impl EnvironmentMap {
         map
     }
 
-    /// Colours at the corners of a cell: left and right of its upper row, then of its lower.
+    /// Colors at the corners of a cell: left and right of its upper row, then of its lower.
     #[inline]
     fn corners(&self, column: usize, row: usize) -> [Rgb; 4] {
         let (width, last) = (self.picture.width(), self.picture.height() - 1);

@@ -2,7 +2,7 @@
 
 use raywright_optics::Rgb;
 
-/// An image of linear colours, row by row from its top.
+/// An image of linear colors, row by row from its top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     width: usize,
@@ -10,7 +10,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Creates an image with `width` colours per row.
+    /// Creates an image with `width` colors per row.
     ///
     /// # Errors
     /// A short reason if there are no texels, not a whole number of rows, or a value is negative or not finite.
@@ -30,7 +30,7 @@ impl Picture {
         }
     }
 
-    /// Number of colours per row.
+    /// Number of colors per row.
     pub fn width(&self) -> usize {
         self.width
     }

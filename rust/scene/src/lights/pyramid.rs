@@ -2,7 +2,7 @@
 
 /// A pyramid of sums of cell weights, over 2 × 2 cells, 4 × 4, and so on. Sampling descends the pyramid and consumes
 /// two random numbers one decision at a time (Clarberg et al., "Wavelet Importance Sampling", 2005, in its simplest
-/// form). Neighbouring numbers map to neighbouring cells, which preserves stratification. The finest weights are
+/// form). Neighboring numbers map to neighboring cells, which preserves stratification. The finest weights are
 /// recomputed by the caller, so a cell takes at most 8/3 bytes.
 #[derive(Clone, Debug)]
 pub struct Pyramid {

@@ -10,13 +10,13 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Waved {
     light: Arc<dyn Light>,
-    /// True if the light has colours, each of which is upsampled to a smooth spectrum; otherwise it is grey.
+    /// True if the light has colors, each of which is upsampled to a smooth spectrum; otherwise it is gray.
     is_coloured: bool,
     /// A spectral factor.
     tint: Option<Tint>,
 }
 
-/// A spectrum, its RGB colour, and the colour's mean, which the light already includes.
+/// A spectrum, its RGB color, and the color's mean, which the light already includes.
 #[derive(Clone, Debug)]
 struct Tint {
     spectrum: Arc<Spectrum>,
@@ -25,12 +25,12 @@ struct Tint {
 }
 
 impl Waved {
-    /// A light with many colours; each is upsampled to a smooth spectrum.
+    /// A light with many colors; each is upsampled to a smooth spectrum.
     pub fn coloured(light: Arc<dyn Light>) -> Self {
         Self { light, is_coloured: true, tint: None }
     }
 
-    /// A light, grey or with many colours, times a spectrum. `make` creates it with the given brightness; `colour` is
+    /// A light, gray or with many colors, times a spectrum. `make` creates it with the given brightness; `colour` is
     /// the spectrum in red, green and blue.
     ///
     /// # Errors

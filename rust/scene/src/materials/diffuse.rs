@@ -14,7 +14,7 @@ pub struct DiffuseMaterial {
 }
 
 impl Default for DiffuseMaterial {
-    /// 50 % grey.
+    /// 50 % gray.
     fn default() -> Self {
         Self { reflectance: Rgb::splat(0.5).into() }
     }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 pub struct NormalMap {
     /// The base material.
     pub material: Arc<dyn Material>,
-    /// The normals, in linear colour.
+    /// The normals, in linear color.
     pub normals: Value,
     /// Factor on the components along u and v.
     pub scale: f64,

@@ -6,7 +6,7 @@ use crate::ShadingPoint;
 use crate::textures::{Needs, TexturePoint, Value};
 use raywright_optics::{AnyBsdf, SoapFilm};
 
-/// A thin film with the same medium on both sides and interference colours: a soap bubble. It has no interior.
+/// A thin film with the same medium on both sides and interference colors: a soap bubble. It has no interior.
 #[derive(Clone, Debug)]
 pub struct SoapFilmMaterial {
     /// Thickness in nm.

@@ -8,7 +8,7 @@ use crate::textures::Needs;
 use raywright_optics::{AnyBsdf, Mirror, Rgb, ThinDielectric};
 use std::sync::Arc;
 
-/// A clear sheet too thin to displace refracted rays: a window, a soap bubble without interference colours.
+/// A clear sheet too thin to displace refracted rays: a window, a soap bubble without interference colors.
 #[derive(Clone, Debug)]
 pub struct ThinDielectricMaterial {
     /// Index of refraction of the sheet.

@@ -11,7 +11,7 @@ use raywright_optics::conductors::{FilmedCurve, FilmedMetal, Metal, Reflectance}
 use raywright_optics::{AnyBsdf, Beckmann, Dielectric, Facets, Filmed, Ggx, Once};
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// A thin film with interference colours on a base: oil on water, a lens coating, oxide on metal. Where the thickness
+/// A thin film with interference colors on a base: oil on water, a lens coating, oxide on metal. Where the thickness
 /// is 0 the base is bare.
 #[derive(Debug)]
 pub struct ThinFilmMaterial {

@@ -105,7 +105,7 @@ pub(super) enum Spectra {
     OfDensity,
     /// Proportional to the density, in segments with closed forms only.
     Closed,
-    /// Not proportional: extinction follows from the spectra of the coefficients' colours.
+    /// Not proportional: extinction follows from the spectra of the coefficients' colors.
     OfColours,
 }
 

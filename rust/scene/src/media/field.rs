@@ -1,10 +1,10 @@
-//! Grids of grey or RGB numbers.
+//! Grids of gray or RGB numbers.
 
 use super::{Cubic, Values};
 use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
 
-/// Numbers on a grid over the unit cube, grey or RGB.
+/// Numbers on a grid over the unit cube, gray or RGB.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Field {
     /// One number for all channels.

@@ -11,7 +11,7 @@ pub enum Glow {
     /// Radiance per unit length.
     Radiance(Field),
     /// Black-body emission at a temperature in kelvin, times the absorption (Kirchhoff, 1860). Planck's curve is
-    /// normalised to its maximum and multiplied by `brightness`.
+    /// normalized to its maximum and multiplied by `brightness`.
     Heat {
         /// Temperature in kelvin.
         kelvin: Values<1>,

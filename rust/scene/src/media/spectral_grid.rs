@@ -1,4 +1,4 @@
-//! Spectral grid media with a colour per point.
+//! Spectral grid media with a color per point.
 
 use super::block_walk::Spectra;
 use super::grid::Here;
@@ -19,13 +19,13 @@ pub struct WavedGrid {
     absorption: Arc<Spectrum>,
     scattering: Arc<Spectrum>,
     emission: Option<Arc<Spectrum>>,
-    /// RGB colour of the extinction.
+    /// RGB color of the extinction.
     colour: Rgb,
 }
 
 impl WavedGrid {
     /// Creates a spectral medium from a grid with coefficients of 1, or 0 for absent effects. Each 1 stands for a
-    /// spectrum, given with its RGB colour.
+    /// spectrum, given with its RGB color.
     pub fn new(
         grid: GridMedium,
         [absorption, scattering]: [(Arc<Spectrum>, Rgb); 2],
@@ -95,7 +95,7 @@ impl Medium for WavedGrid {
 
     fn most_by_waves(&self, most: Rgb, waves: &Waves) -> Rgb {
         let [dimmed, _] = self.plain(waves, self.grid.has_albedo());
-        // The smooth spectrum of a colour never exceeds twice its greatest channel.
+        // The smooth spectrum of a color never exceeds twice its greatest channel.
         let more = if self.grid.is_coloured() { 2.0 } else { 1.0 };
         let most = dimmed * (most.max() * more * (1.0 + 1e-12));
         if self.glows() { most.at_least(Rgb::splat(1.0 / self.grid.across())) } else { most }

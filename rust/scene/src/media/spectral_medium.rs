@@ -12,7 +12,7 @@ pub struct WavedMedium {
     medium: Arc<dyn Medium>,
     absorption: Tint,
     scattering: Tint,
-    /// Emission spectrum; `None` if the emission has a colour per point.
+    /// Emission spectrum; `None` if the emission has a color per point.
     emission: Option<Tint>,
 }
 
@@ -36,7 +36,7 @@ impl Tint {
 
 impl WavedMedium {
     /// Creates a spectral medium from one in RGB. Absorption, scattering and emission at unit density are given as
-    /// spectra, with the RGB colours that represent them.
+    /// spectra, with the RGB colors that represent them.
     pub fn new(
         medium: Arc<dyn Medium>,
         [absorption, scattering]: [(Arc<Spectrum>, Rgb); 2],

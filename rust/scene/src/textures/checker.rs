@@ -4,7 +4,7 @@ use super::periodic_functions::pulse;
 use super::{Domain, Needs, Pattern, TexturePoint};
 
 /// Unit cells that alternate between 0 and 1 along each axis, box-filtered in closed form, so that they become uniform
-/// grey in the distance.
+/// gray in the distance.
 ///
 /// In texture coordinates the cells are squares, with 0 at the lower left. In space they are cubes; on a surface
 /// exactly between two layers the result is arbitrary.

@@ -56,7 +56,7 @@ pub struct TexturePoint {
     pub position: DVec3,
     /// Footprint in terms of the position.
     pub size: f64,
-    /// Interpolated vertex colour; white if the mesh has none.
+    /// Interpolated vertex color; white if the mesh has none.
     pub colour: Rgb,
     /// Wavelengths, one per lane; `None` for red, green and blue.
     pub waves: Option<Waves>,
@@ -74,7 +74,7 @@ impl Default for TexturePoint {
     }
 }
 
-/// A texture: a colour, such as reflectance or radiance, or a number, such as roughness.
+/// A texture: a color, such as reflectance or radiance, or a number, such as roughness.
 pub trait Texture<T = Rgb>: Debug + Send + Sync {
     /// The value at a point, averaged over the footprint.
     fn at(&self, point: &TexturePoint) -> T;

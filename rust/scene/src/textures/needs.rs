@@ -7,7 +7,7 @@ use std::ops::BitOr;
 pub struct Needs {
     /// Texture coordinates.
     pub uv: bool,
-    /// Vertex colours.
+    /// Vertex colors.
     pub colours: bool,
     /// Position in the shape's space.
     pub position: bool,

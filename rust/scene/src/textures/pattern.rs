@@ -47,7 +47,7 @@ impl<P: Pattern> Texture for Between<P> {
     }
 }
 
-/// Interpolates two colours, channel by channel, and clamps the result between them against rounding.
+/// Interpolates two colors, channel by channel, and clamps the result between them against rounding.
 #[inline]
 pub(super) fn blend(a: Rgb, b: Rgb, amount: Rgb) -> Rgb {
     (a + (b - a) * amount).at_least(a.at_most(b)).at_most(a.at_least(b))

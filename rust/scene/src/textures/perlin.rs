@@ -2,7 +2,7 @@
 
 use raywright_base::math::DVec3;
 
-/// Maximum of the sum over the eight corners' gradients, each in the worst direction. Maximising over the cell gave
+/// Maximum of the sum over the eight corners' gradients, each in the worst direction. Maximizing over the cell gave
 /// 1.036353811… at (0.3524, ½, ½) and its images.
 const MOST: f64 = 1.036_353_9;
 

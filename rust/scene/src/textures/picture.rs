@@ -12,14 +12,14 @@ static DECODED: LazyLock<[[f64; 256]; 2]> = LazyLock::new(|| {
     [std::array::from_fn(share), std::array::from_fn(|i| srgb(share(i)))]
 });
 
-/// Texels row by row from the top, in their input format: 8 bits or floats, grey or RGB.
+/// Texels row by row from the top, in their input format: 8 bits or floats, gray or RGB.
 #[derive(Clone)]
 pub enum Texels {
-    /// 8-bit grey; true if sRGB.
+    /// 8-bit gray; true if sRGB.
     Grey8(Vec<u8>, bool),
     /// 8-bit RGB; true if sRGB.
     Colour8(Vec<[u8; 3]>, bool),
-    /// Grey floats.
+    /// Gray floats.
     Grey(Vec<f32>),
     /// RGB floats.
     Colour(Vec<[f32; 3]>),

@@ -3,7 +3,7 @@
 use raywright_optics::Rgb;
 use std::fmt::{Debug, Display};
 
-/// A colour, or a number.
+/// A color, or a number.
 pub trait Quantity: Copy + Debug + Display + PartialEq + Send + Sync + 'static {
     /// Zero.
     const ZERO: Self;

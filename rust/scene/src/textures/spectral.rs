@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub struct Spectral {
     spectrum: Arc<Spectrum>,
     range: [f64; 2],
-    /// Its RGB colour.
+    /// Its RGB color.
     colour: Rgb,
 }
 
@@ -20,7 +20,7 @@ impl Spectral {
         Self { range: spectrum.range(), colour: spectrum.seen().at_least(Rgb::ZERO), spectrum }
     }
 
-    /// The smooth spectrum of a colour; a plain constant if the spectrum is flat, as for greys.
+    /// The smooth spectrum of a color; a plain constant if the spectrum is flat, as for grays.
     pub fn of(colour: Rgb, role: Role) -> Value {
         match Smooth::of(colour, role) {
             smooth if smooth.is_flat() => colour.into(),
@@ -50,12 +50,12 @@ impl Texture for Spectral {
     }
 }
 
-/// A texture whose colours are upsampled to smooth spectra.
+/// A texture whose colors are upsampled to smooth spectra.
 #[derive(Clone, Debug)]
 pub struct Upsampled {
-    /// The colours.
+    /// The colors.
     pub colours: Arc<dyn Texture>,
-    /// The physical quantity of the colours.
+    /// The physical quantity of the colors.
     pub role: Role,
 }
 

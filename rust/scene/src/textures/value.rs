@@ -5,7 +5,7 @@ use super::{Needs, Quantity, Texture, TexturePoint};
 use raywright_optics::Rgb;
 use std::sync::Arc;
 
-/// A parameter of a material or a light, a colour or a number: constant, or a texture.
+/// A parameter of a material or a light, a color or a number: constant, or a texture.
 #[derive(Clone, Debug)]
 pub enum Value<T = Rgb> {
     /// A constant.
@@ -64,7 +64,7 @@ impl<T: Quantity> Value<T> {
 }
 
 impl Value {
-    /// Converts a colour to a number: the mean of its channels.
+    /// Converts a color to a number: the mean of its channels.
     pub fn number(&self) -> Value<f64> {
         match self {
             Self::Constant(rgb) => Value::Constant(rgb.mean()),

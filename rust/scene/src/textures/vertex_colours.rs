@@ -1,15 +1,15 @@
-//! Vertex colours as a texture.
+//! Vertex colors as a texture.
 
 use super::{Needs, Texture, TexturePoint};
 use raywright_optics::Rgb;
 
-/// The interpolated vertex colour, clamped to [0, 1]; white on meshes without vertex colours.
+/// The interpolated vertex color, clamped to [0, 1]; white on meshes without vertex colors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VertexColours;
 
 impl Texture for VertexColours {
     fn at(&self, point: &TexturePoint) -> Rgb {
-        // Interpolating equal colours may differ from them by a rounding.
+        // Interpolating equal colors may differ from them by a rounding.
         point.colour.at_least(Rgb::ZERO).at_most(Rgb::ONE)
     }
 

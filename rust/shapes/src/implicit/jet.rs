@@ -2,7 +2,7 @@
 //! 1966, Griewank and Walther 2008).
 //!
 //! For intervals, the derivatives enclose every slope of the function, including those on either side of a kink
-//! (Clarke's generalised gradient). So if the slope excludes zero, the function is monotone.
+//! (Clarke's generalized gradient). So if the slope excludes zero, the function is monotone.
 
 use super::functions::{Binary, Unary};
 use super::number::{Number, Scalar};

@@ -19,7 +19,7 @@ const MOST_CROSSINGS: u32 = 64;
 /// A polygon becomes a fan from its first corner if all triangles of the fan have the polygon's orientation, as for
 /// convex ones. All others are projected along the largest coordinate of their Newell normal, which keeps two
 /// coordinates unchanged. A simple polygon in a plane is covered exactly once, and so is one whose holes are connected
-/// to its outline by edges traversed twice. Corners on the edge between their neighbours get triangles with a nonzero
+/// to its outline by edges traversed twice. Corners on the edge between their neighbors get triangles with a nonzero
 /// area if possible. Polygons that are not finite or have no area become fans.
 pub fn triangulate(points: &[[f64; 3]], corners: &[i64], counts: &[usize]) -> Vec<[i64; 3]> {
     let corner = |i: usize| DVec3::from_array(points[corners[i] as usize]);
@@ -136,7 +136,7 @@ impl<'a> Ring<'a> {
         [self.before[i], i, self.after[i]]
     }
 
-    /// Cut off ears until none is left. Cutting one changes the ear status of its neighbours only: if a corner inside
+    /// Cut off ears until none is left. Cutting one changes the ear status of its neighbors only: if a corner inside
     /// some triangle stops being reflex, another reflex corner remains there.
     fn clip(mut self, effort: &mut u64, mut take: impl FnMut([usize; 3])) {
         let count = self.points.len();

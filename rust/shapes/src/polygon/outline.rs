@@ -94,7 +94,7 @@ impl Edge {
         self.ring == other.ring && (self.index + 1) % self.count == other.index
     }
 
-    /// Return whether two edges share a point, other than the common corner of neighbours.
+    /// Return whether two edges share a point, other than the common corner of neighbors.
     fn meets(&self, other: &Self) -> bool {
         if self.least().cmpgt(other.greatest()).any() || other.least().cmpgt(self.greatest()).any() {
             return false;

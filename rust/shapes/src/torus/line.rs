@@ -1,6 +1,6 @@
 //! Intersection of a line with a torus.
 //!
-//! About the centre, let P be the line's nearest point to it and d its direction. A point p = `P + s·d` lies on the
+//! About the center, let P be the line's nearest point to it and d its direction. A point p = `P + s·d` lies on the
 //! torus where `F(s) = (|p|² + R² − r²)² − 4R²ρ² = 0`, ρ being the distance from the axis. As P ⟂ d, the quartic has no
 //! cubic term, and its critical points are the roots of `4A²s³ + 2bs + c`, with A = d · d. F is monotone between two
 //! critical points, so it has one root there if the signs at the ends differ, and else none. So no root is skipped, and
@@ -16,7 +16,7 @@
 use crate::Contact;
 use raywright_base::math::{DVec3, DoubleDouble, Ray};
 
-/// A torus centred at the origin, in units in which R lies in [1, 2).
+/// A torus centered at the origin, in units in which R lies in [1, 2).
 #[derive(Clone, Copy, Debug)]
 pub struct Tube {
     /// The unit axis.
@@ -32,7 +32,7 @@ pub struct Tube {
 pub struct TorusHit {
     /// The line parameter.
     pub t: f64,
-    /// Relative to the centre.
+    /// Relative to the center.
     pub position: DVec3,
     /// The kind of contact.
     pub contact: Contact,
@@ -45,7 +45,7 @@ fn dot(a: &[DoubleDouble; 3], b: &[DoubleDouble; 3]) -> DoubleDouble {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A line relative to a torus; `s` is 0 at the point nearest to the centre.
+/// A line relative to a torus; `s` is 0 at the point nearest to the center.
 struct TorusLine<'a> {
     tube: &'a Tube,
     /// The parts of nearest point and direction across the axis.
@@ -65,7 +65,7 @@ struct TorusLine<'a> {
 }
 
 impl<'a> TorusLine<'a> {
-    /// Set up a line from an origin relative to the centre and a direction whose largest coordinate is in [1, 2). None
+    /// Set up a line from an origin relative to the center and a direction whose largest coordinate is in [1, 2). None
     /// if the line misses the bounding sphere.
     fn new(tube: &'a Tube, q: [DoubleDouble; 3], d: DVec3) -> Option<Self> {
         let far = DVec3::from_array(q.map(|x| x.high));
@@ -251,7 +251,7 @@ fn root(
 
 /// Call `met` with each intersection of a line with the torus, in order, until it returns true.
 ///
-/// `q` is the line's origin relative to the centre and `direction` has its largest coordinate in [1, 2).
+/// `q` is the line's origin relative to the center and `direction` has its largest coordinate in [1, 2).
 pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn FnMut(TorusHit) -> bool) -> bool {
     let Some(line) = TorusLine::new(tube, q, direction) else { return false };
     let (critical, count) = line.critical();
@@ -283,7 +283,7 @@ pub fn meet(tube: &Tube, q: [DoubleDouble; 3], direction: DVec3, met: &mut dyn F
     false
 }
 
-/// The ray's origin relative to a centre, without rounding, scaled by a power of two.
+/// The ray's origin relative to a center, without rounding, scaled by a power of two.
 pub fn relative(ray: &Ray, centre: DVec3, scale: f64) -> [DoubleDouble; 3] {
     std::array::from_fn(|i| {
         let (o, c) = (ray.origin[i], centre[i]);

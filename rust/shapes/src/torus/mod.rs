@@ -14,7 +14,7 @@ use std::f64::consts::{PI, TAU};
 /// All points at distance `minor` from a circle of radius `major`.
 ///
 /// The circle lies about `centre` at right angles to the axis. The surface is a ring torus if `minor < major`, and a
-/// horn torus, which touches itself in the centre, if they are equal. Spindle tori, which intersect themselves, are
+/// horn torus, which touches itself in the center, if they are equal. Spindle tori, which intersect themselves, are
 /// rejected.
 ///
 /// `u` runs around the axis and `v` around the tube, from the outermost circle toward the axis' direction.
@@ -30,7 +30,7 @@ pub struct Torus {
 }
 
 impl Torus {
-    /// Create a torus from its centre, its axis of any length, and its major and minor radius.
+    /// Create a torus from its center, its axis of any length, and its major and minor radius.
     ///
     /// # Errors
     ///

@@ -3,7 +3,7 @@
 //! With corners `a b c` relative to the ray's origin, the weight of `a` is `d · (b × c)`, computed doubled as `d · ((b
 //! − c) × (b + c))`. This form cancels less far from the origin, and reversing the edge negates it exactly. (It is the
 //! side product of two lines in Plücker coordinates.) It is computed in f64 with an error bound; if the bound leaves
-//! the sign open, the sign is computed exactly. So the decision is exact for the given numbers, and neighbours that
+//! the sign open, the sign is computed exactly. So the decision is exact for the given numbers, and neighbors that
 //! share an edge never disagree.
 //!
 //! The bound. Let u = 2⁻⁵³, M bound every coordinate of a corner relative to the origin, D < 2 every coordinate of the
@@ -28,7 +28,7 @@ use raywright_base::math::{DVec3, Ray, Region, exact_depth, exact_edges, exact_t
 pub struct EdgeRay {
     /// The origin as given.
     pub origin: DVec3,
-    /// The origin relative to the region's centre.
+    /// The origin relative to the region's center.
     pub local: DVec3,
     /// Scaled by `scale`.
     pub direction: DVec3,
@@ -148,7 +148,7 @@ impl EdgeRay {
         let far = local.abs();
         let far = greater(greater(far.x, far.y), far.z);
         let largest = far + region.radius;
-        // A ray moved to the scene starts within √3 radii of the centre, if it hits at all.
+        // A ray moved to the scene starts within √3 radii of the center, if it hits at all.
         let is_far = far > Self::FAR * region.radius;
         let reach = if is_far { 3.0 * region.radius } else { largest };
         let absolute = ray.origin.abs();

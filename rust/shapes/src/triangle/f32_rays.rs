@@ -16,7 +16,7 @@ use std::ops::{Add, Mul};
 pub struct PlainRays {
     /// Origins as given, rounded.
     pub origin: [Column<f32>; 3],
-    /// Origins relative to the region's centre, in box units.
+    /// Origins relative to the region's center, in box units.
     pub local: [Column<f32>; 3],
     /// Directions, scaled by a power of two so that the largest coordinate lies in [1, 2).
     pub direction: [Column<f32>; 3],

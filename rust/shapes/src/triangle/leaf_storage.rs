@@ -101,7 +101,7 @@ impl<const N: usize> Leaves<N> for DoubleLeaves<N> {
 
     #[inline(always)]
     fn ray(ray: &EdgeRay, region: &Region) -> BlockRay {
-        // |origin| + |corner|, both relative to the centre and in box units.
+        // |origin| + |corner|, both relative to the center and in box units.
         BlockRay::new(ray.local * region.scale, ray, ray.largest * region.scale)
     }
 

@@ -22,7 +22,7 @@
 //! allowed, and 128εE² for the denominator. With L below 2⁴⁰ no sum exceeds 6LE² < 2¹²⁵; beyond it nothing is rejected
 //! by t.
 //!
-//! f64 corners are stored relative to the scene's centre, in box units: a corner, and its two edges computed in f64.
+//! f64 corners are stored relative to the scene's center, in box units: a corner, and its two edges computed in f64.
 //! All are rounded to f32. An edge then errs by εE as before, and s by ε|corner| more, which with ε|origin| is εL: the
 //! bounds are the same. (Edges between rounded corners would have terms in L² that do not shrink with the triangle, and
 //! almost no triangle of a fine mesh would be rejected.)

@@ -21,7 +21,7 @@ pub type Column<T> = [T; RAYS];
 pub struct EdgeRays {
     /// Origins as given, by axis.
     pub origin: [Column<f64>; 3],
-    /// Origins relative to the region's centre.
+    /// Origins relative to the region's center.
     pub local: [Column<f64>; 3],
     /// Directions as given.
     unscaled: [Column<f64>; 3],

@@ -51,7 +51,7 @@ pub fn transmittance(wavelength: f64, cos_zenith: f64, turbidity: f64) -> f64 {
     (-(molecules + dust + ozone) * mass).exp()
 }
 
-/// Colour-matching functions of the CIE 1931 observer at a wavelength in nm (Wyman, Sloan and Shirley, "Simple Analytic
+/// Color-matching functions of the CIE 1931 observer at a wavelength in nm (Wyman, Sloan and Shirley, "Simple Analytic
 /// Approximations to the CIE XYZ Color Matching Functions", 2013).
 pub fn observer(wavelength: f64) -> [f64; 3] {
     let lobe = |middle: f64, left: f64, right: f64| {

@@ -101,7 +101,7 @@ fn assert_density(light: &dyn Light, receiver: &LightSampleContext, parts: usize
         let weight = light.infinite_radiance(sample.direction) / pdf;
         assert!((weight - sample.weight).abs().max() <= 1e-6 * weight.max(), "{weight}");
     }
-    // Normalised, because the integral has its own error.
+    // Normalized, because the integral has its own error.
     let expected: Vec<f64> = expected.iter().map(|p| p / sum).collect();
     assert_frequencies(&counts, &expected);
 }

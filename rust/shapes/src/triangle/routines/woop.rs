@@ -4,7 +4,7 @@
 //! reversing the edge negates it exactly, so shared edges are watertight. If an edge function is zero, all three are
 //! recomputed in f64, which is exact for products of two f32.
 //!
-//! The shear rounds the corners. So the decision is exact for a slightly perturbed triangle: neighbours agree with each
+//! The shear rounds the corners. So the decision is exact for a slightly perturbed triangle: neighbors agree with each
 //! other, but not with exact arithmetic on the given triangle.
 
 use super::{Routine, SingleRay, TriangleHit, relative, signs_differ};
