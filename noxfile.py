@@ -73,6 +73,36 @@ def slow(session):
 
 
 @nox.session
+def miri(session):
+    """Interpret the tests of scalar lanes, loops, work and thread pools, which finds undefined behavior."""
+    # Tree borrows, since crossbeam-epoch, under rayon, does not follow stacked borrows. Its threads outlive
+    # the tests, and it keeps tags in pointers.
+    flags = ["tree-borrows", "disable-isolation", "ignore-leaks", "permissive-provenance"]
+    how = {
+        "MIRIFLAGS": " ".join(f"-Zmiri-{flag}" for flag in flags),
+        "PROPTEST_CASES": "8",
+        # To find the names of a backtrace takes minutes.
+        "RUST_BACKTRACE": "0",
+    }
+    tests = session.posargs or ["simd::", "parallel::", "work::", "workers::"]
+    command = ["+nightly", "miri", "test", "--locked", "--package", "raywright-base", "--lib", "--", *tests]
+    cargo(session, *command, env=how)
+
+
+@nox.session
+@nox.parametrize("language", ["python", "rust"])
+def coverage(session, language):
+    """Print the share of lines that tests run; `nox -s "coverage(language='rust')"` for one language."""
+    if language == "python":
+        run_module(session, "pip", "install", "--quiet", "coverage>=7", "pytest-cov>=5")
+        run_module(session, "pytest", "--cov", "--cov-report=term:skip-covered", *session.posargs)
+        return
+    # Installs llvm-tools of the toolchain by itself.
+    cargo(session, "install", "--quiet", "--locked", "cargo-llvm-cov")
+    cargo(session, "llvm-cov", "--release", "--locked", "--summary-only", *session.posargs)
+
+
+@nox.session
 def outside(session):
     """Test the examples of docs/extending.md in a crate outside the tree, which sees public names only."""
     root, folder = Path.cwd(), Path(session.create_tmp())

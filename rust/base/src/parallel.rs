@@ -162,13 +162,14 @@ mod tests {
 
     #[test]
     fn what_is_made_is_in_order() {
-        for count in [0, 1, 2, 31, 32, 33, 100_003] {
+        let (most, keys) = if cfg!(miri) { (75, 200) } else { (100_003, 10_000) };
+        for count in [0, 1, 2, 31, 32, 33, most] {
             let wanted: Vec<_> = (0..count).map(|i| i.to_string()).collect();
             assert_eq!(collect(count, |i| i.to_string()), wanted);
             assert_eq!(map(count, |i| i.to_string()), wanted);
             assert_eq!(map_parts(wanted.clone(), |part| part + "."), map(count, |i| format!("{i}.")));
         }
-        let mut keys: Vec<u64> = (0..10_000).map(|i| i * 7919 % 10_007).collect();
+        let mut keys: Vec<u64> = (0..keys).map(|i| i * 7919 % 10_007).collect();
         sort(&mut keys);
         assert!(keys.is_sorted());
         assert_eq!(join(|| 1, || "two"), (1, "two"));

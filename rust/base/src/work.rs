@@ -51,7 +51,7 @@ impl<'a> Work<'a> {
     pub const UNWATCHED: Self = Self { watch: None, from: 0.0, to: 1.0 };
 
     /// Items per thread in a round of parallel work, which takes some milliseconds.
-    const ROUND: usize = 1 << 16;
+    const ROUND: usize = if cfg!(miri) { 1 << 8 } else { 1 << 16 };
 
     /// All of the watched work.
     pub fn of(watch: &'a Watch) -> Self {
