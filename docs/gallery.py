@@ -194,7 +194,7 @@ def marble():
 def radiosity():
     """A room solved by radiosity, shown by its patches.
 
-    Any camera can view the solution, with one ray a sample. The error is that of the picture; that of the
+    Any camera can view the solution, with one ray per sample. The error is that of the picture; that of the
     solution is 2 %.
     """
 
