@@ -5,7 +5,7 @@
 //! perturbed ray crosses ([`Contact`]). So a closed surface is crossed an even number of times from outside and an odd
 //! number from inside, in any direction. Where the ray touches but crosses nothing, the contact is still reported,
 //! since [`super::Accelerator::intersect`] reports it: twice, as an entry and an exit. These are two triangles of a
-//! ridge, or twice the same one if its neighbours at that point are edge-on.
+//! ridge, or twice the same one if its neighbors at that point are edge-on.
 
 use super::query::{Every, Meeting};
 use raywright_base::math::Hit;

@@ -48,7 +48,7 @@ pub fn soup() -> Vec<[Vec3; 3]> {
     all
 }
 
-/// Fans of neighbouring rays: through the pixels of near and distant cameras, parallel to the axes, and with gaps of
+/// Fans of neighboring rays: through the pixels of near and distant cameras, parallel to the axes, and with gaps of
 /// invalid rays.
 pub fn fans() -> Vec<Vec<Ray>> {
     let mut fans = Vec::new();

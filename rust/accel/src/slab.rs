@@ -7,7 +7,7 @@
 //! o| for r, the same in both terms; v·|plane| for the product (less if fused); v·|o| for rounding o, and as much again
 //! for −o·r and for subtracting the pad; and v·(|plane| + |o|) for the sum. In all that is less than 6v·R, where R
 //! ("reach") bounds |plane| + |o|. The pad is 8v·R. What remains, at least v·R since |r| > 1/2, covers the error of a
-//! hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Subtracting the centre, moving a distant origin and rounding
+//! hit's own `t` ([`EdgeRay::T_ERROR`] is a quarter of v). Subtracting the center, moving a distant origin and rounding
 //! `t`, all in f64, cost some fourteen 2⁻⁵³ of the distance, for which 2⁻⁴⁶ of it is added.
 //!
 //! A direction component of less than 2⁻⁶⁰ is replaced by ±2⁻⁶⁰. Within reach, that moves the ray by less than a

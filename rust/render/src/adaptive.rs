@@ -24,7 +24,7 @@ use raywright_optics::Rgb;
 /// An epoch ends when the samples of all pixels have doubled. At its start, each half is allotted its samples up to the
 /// end. The error of a sum over pixels is least if counts are proportional to the square root of one sample's
 /// contribution to it (Neyman, 1934), here to relMSE. That contribution is estimated from few samples and smoothed over
-/// neighbours; without smoothing, as much is lost as is gained. A Cornell box with optimal counts would need 1.5 times
+/// neighbors; without smoothing, as much is lost as is gained. A Cornell box with optimal counts would need 1.5 times
 /// fewer samples than uniform sampling; this method needs 1.3 to 1.35 times fewer.
 ///
 /// Pixels of a patch take their samples together, so they all have the same number, the mean of their individual ones.

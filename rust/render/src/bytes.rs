@@ -1,4 +1,4 @@
-//! Serialisation of numbers. Input bytes are untrusted: reading never panics and allocates no more than they fill.
+//! Serialization of numbers. Input bytes are untrusted: reading never panics and allocates no more than they fill.
 
 use raywright_optics::Rgb;
 use std::fmt;
@@ -82,7 +82,7 @@ impl Writer {
         }
     }
 
-    /// Writes colours, channel by channel, like [`Writer::words`].
+    /// Writes colors, channel by channel, like [`Writer::words`].
     pub fn colours<T>(&mut self, of: &[T], colour: impl Fn(&T) -> Rgb) {
         for channel in 0..3 {
             self.words(of.iter().map(|entry| colour(entry)[channel].to_bits()));
@@ -130,7 +130,7 @@ impl<'a> Reader<'a> {
         self.each(into, |entry, word| *entry = word)
     }
 
-    /// Reads colours written by [`Writer::colours`] into all of `into`.
+    /// Reads colors written by [`Writer::colours`] into all of `into`.
     pub fn colours<T>(&mut self, into: &mut [T], colour: impl Fn(&mut T) -> &mut Rgb) -> Result<(), Malformed> {
         for channel in 0..3 {
             self.each(into.iter_mut(), |entry, bits: u64| colour(entry)[channel] = f64::from_bits(bits))?;

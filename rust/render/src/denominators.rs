@@ -6,7 +6,7 @@ use raywright_optics::Rgb;
 /// Added to the squared brightness, so that errors in black pixels have finite weight.
 pub(super) const FLOOR: f64 = 0.01;
 
-/// Brightness of a pixel and its four neighbours; at the border, its own brightness instead.
+/// Brightness of a pixel and its four neighbors; at the border, its own brightness instead.
 #[inline]
 pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5] {
     let here = y * width + x;
@@ -28,11 +28,11 @@ pub(super) fn cross(means: &[Rgb], width: usize, x: usize, y: usize) -> [Rgb; 5]
 /// by s²/n or of 1/(x² + 0.01) by a Taylor series, do not help, because the noise is too large for them. (Both were
 /// tried, as was the variance of one half of the samples over the mean of the other.)
 ///
-/// So μ is estimated from the neighbourhood: the median of the pixel and its four neighbours. A mean of neighbours is
+/// So μ is estimated from the neighborhood: the median of the pixel and its four neighbors. A mean of neighbors is
 /// much too bright next to a light, which hides errors there (8 to 13 % of the total at 16 samples). Medians or trimmed
-/// means of all eight neighbours lose too much beside dark corners. Below 16 samples the pixel itself has no vote,
+/// means of all eight neighbors lose too much beside dark corners. Below 16 samples the pixel itself has no vote,
 /// because that would cost 10 % of the error at 8 samples. From 16 samples on it has one, which is more accurate where
-/// neighbours are unrelated. Two bounds limit the median.
+/// neighbors are unrelated. Two bounds limit the median.
 ///
 /// First, it differs from the pixel's own mean by 5/√n standard errors at most. Weighted by s², a mean of n samples
 /// deviates by γ/√n standard errors, where γ is the skewness of the samples, some 2 to 5 in global illumination; a
@@ -68,14 +68,14 @@ impl Denominators {
     }
 
     /// Denominators for the error from the pixel's brightest sample. `without` is the pixel's mean without it, and
-    /// `around` the mean of its neighbours.
+    /// `around` the mean of its neighbors.
     ///
     /// A bright sample among few raises its pixel's mean and would thus divide its own error: light found by a single
     /// sample would have an error of 1/n instead of 1 or 100. So if the mean depends on one sample, its denominator
     /// comes from the other samples (leave one out). The sample is trusted as far as there is confirmation: by the
-    /// neighbours, next to a lamp or in a caustic; or by the whole picture, if samples of this brightness are mostly
+    /// neighbors, next to a lamp or in a caustic; or by the whole picture, if samples of this brightness are mostly
     /// seen again ([`Chance`]). Otherwise the denominator is that of the other samples alone, which is much too small
-    /// for a lamp smaller than a pixel. So the largest error uses the neighbours alone, and the least error uses the
+    /// for a lamp smaller than a pixel. So the largest error uses the neighbors alone, and the least error uses the
     /// upper bound from the whole picture. The contribution of a few even darker pixels is bounded in
     /// `heavy_tail_bound.rs`.
     #[inline]
@@ -105,7 +105,7 @@ impl Denominators {
     }
 }
 
-/// Ratio by which a mean's squared brightness plus floor must exceed that of the other samples and the neighbours for
+/// Ratio by which a mean's squared brightness plus floor must exceed that of the other samples and the neighbors for
 /// the mean to depend on one of `samples` samples. Among few samples of any distribution, one is by far the largest.
 fn hangs(samples: f64) -> f64 {
     (1.0 + 8.0 / samples).powi(2).max(2.0)
@@ -117,11 +117,11 @@ pub(super) struct Peak {
     pub likely: Rgb,
     pub least: Rgb,
     pub most: Rgb,
-    /// True if the mean depends on this one sample, whatever the neighbours show.
+    /// True if the mean depends on this one sample, whatever the neighbors show.
     pub hangs: bool,
 }
 
-/// Mean brightness of the up to eight neighbours at distance `apart` along both axes; black if there are none.
+/// Mean brightness of the up to eight neighbors at distance `apart` along both axes; black if there are none.
 #[inline]
 pub(super) fn around(means: &[Rgb], width: usize, x: usize, y: usize, apart: usize) -> Rgb {
     let height = means.len() / width;
@@ -144,7 +144,7 @@ pub(super) fn around(means: &[Rgb], width: usize, x: usize, y: usize, apart: usi
 mod tests {
     use super::*;
 
-    /// A pixel of 0.1 where one of 64 samples was 64, with neighbours of this brightness and these chances of similar
+    /// A pixel of 0.1 where one of 64 samples was 64, with neighbors of this brightness and these chances of similar
     /// samples.
     fn peak(around: f64, likely: f64, most: f64) -> [f64; 3] {
         let [mean, without, around] = [1.1, 0.1, around].map(Rgb::splat);
@@ -163,7 +163,7 @@ mod tests {
         assert!(close(peak(0.1, 0.0, 1.0), [1.1, 0.1, 0.1]));
         // The picture predicts a chance of a quarter, and at most one half.
         assert!(close(peak(0.1, 0.25, 0.5), [0.6, 0.35, 0.1]));
-        // Neighbours have the same brightness, or half of it.
+        // Neighbors have the same brightness, or half of it.
         assert!(close(peak(1.1, 0.0, 0.0), [1.1, 1.1, 1.1]));
         assert!(close(peak(0.5, 0.0, 0.1), [0.5, 0.5, 0.5]));
     }

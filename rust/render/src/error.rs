@@ -20,7 +20,7 @@ pub struct ErrorEstimate {
     pub low: f64,
     /// Upper end of the interval.
     pub high: f64,
-    /// The few samples that dominate the estimate, which is then unreliable; `None` if there are many, or neighbours
+    /// The few samples that dominate the estimate, which is then unreliable; `None` if there are many, or neighbors
     /// show the same brightness.
     pub carried: Option<DominantSamples>,
 }
@@ -128,14 +128,14 @@ struct Patch {
     most: f64,
     alike: f64,
     own: f64,
-    /// Contributions of the largest samples, per kind of cell. Neighbours mostly share one such sample within the
+    /// Contributions of the largest samples, per kind of cell. Neighbors mostly share one such sample within the
     /// patch.
     peaks: [f64; 2],
-    /// The part of these that no neighbour confirms.
+    /// The part of these that no neighbor confirms.
     finds: [f64; 2],
 }
 
-/// The whole picture, for neighbour lookups.
+/// The whole picture, for neighbor lookups.
 struct PixelErrors<'a> {
     means: &'a [Rgb],
     /// Brightness of pixels without their outliers.
@@ -221,7 +221,7 @@ impl ErrorSums {
     ///
     /// Three sources of uncertainty are treated as independent.
     ///
-    /// First, the true error of each patch is one realisation of (x − μ)². Channels are summed as fully correlated, as
+    /// First, the true error of each patch is one realization of (x − μ)². Channels are summed as fully correlated, as
     /// they nearly are, and patches as independent, as they are. (Pixels that take samples together are correlated to
     /// an unknown degree; the interval is slightly wide if the correlation is partial.) Let m be its expectation, which
     /// is the estimate. For a normal x the cumulants are m, 2m² and 8m³. Means of few bright and many dark samples are
@@ -319,7 +319,7 @@ mod tests {
         let busy = |x: u32, y: u32| Sampler::new(77, x, y).one(0) + 0.1;
         let pictures: [&dyn Fn(u32, u32) -> f64; 3] = [&smooth, &edged, &busy];
         for (i, brightness) in pictures.into_iter().enumerate() {
-            // For detailed pictures the estimate is unreliable below 16 samples, because neighbours are unrelated.
+            // For detailed pictures the estimate is unreliable below 16 samples, because neighbors are unrelated.
             let counts = if i < 2 { &[2, 4, 8, 16, 64, 256][..] } else { &[16, 64, 256] };
             for &samples in counts.iter().filter(|&&samples| samples < 256 || cases::are_all()) {
                 let (mut close, mut covered) = (0, 0);
@@ -433,7 +433,7 @@ mod tests {
         for batch in [1, 4] {
             assert_eq!(carried([20.0, 20.0], batch, 1), None);
             assert_eq!(carried([20.0, 11.0], batch, 1), None);
-            // A brighter sample than neighbours show, and one that nothing confirms.
+            // A brighter sample than neighbors show, and one that nothing confirms.
             for shown in [9.0, 0.1] {
                 let carried = carried([20.0, shown], batch, 1).expect("two samples are all there is");
                 assert!(carried.samples <= 2 && carried.share > 0.5, "{carried:?}");

@@ -558,8 +558,8 @@ mod tests {
 
     #[test]
     fn what_is_not_asked_for_takes_no_memory() {
-        // A count and five colours; three colours more with batches, two with clamping. Halves double everything and
-        // add evidence: two colours and a count.
+        // A count and five colors; three colors more with batches, two with clamping. Halves double everything and
+        // add evidence: two colors and a count.
         let (count, colour) = (size_of::<u32>(), size_of::<Rgb>());
         for (batch, halves, clamp, each) in [
             (1, false, None, count + 5 * colour),

@@ -7,7 +7,7 @@
 /// process with λ per cell, the numbers of cells with one and with two determine λ. It is twice the number of cells
 /// with two over the number of those with one (Good, "The Population Frequencies of Species and the Estimation of
 /// Population Parameters", 1953, who credits Turing). Rarity depends on brightness, so each octave of brightness is
-/// estimated separately, with its two neighbours.
+/// estimated separately, with its two neighbors.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sightings([[u64; 2]; OCTAVES + 2]);
 

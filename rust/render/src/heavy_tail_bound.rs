@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 /// such a small share, but then the error over the squared true brightness is a hundred times what it seems. A picture
 /// has many such pixels, and one of the rare kind contributes as much error as all others together. Variances do not
 /// describe such sums. They are large because of their largest term: the sum exceeds x as often as one of its terms
-/// does (Embrechts, Klüppelberg and Mikosch, "Modelling Extremal Events", 1997, section 1.3).
+/// does (Embrechts, Klüppelberg and Mikosch, "Modeling Extremal Events", 1997, section 1.3).
 ///
 /// Rims have arbitrary positions within pixels, so covered shares are uniform a priori. After one of n samples hit,
 /// their density is proportional to the share: a share below t/n, for t < 1, has probability t²/2.

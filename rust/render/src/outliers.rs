@@ -55,8 +55,8 @@ impl Largest {
     }
 }
 
-/// Returns whether a sample is unconfirmed by neighbours: it exceeds the other samples of its pixel by more than twice
-/// the excess of the brightest neighbour.
+/// Returns whether a sample is unconfirmed by neighbors: it exceeds the other samples of its pixel by more than twice
+/// the excess of the brightest neighbor.
 ///
 /// A pixel on the rim of a lamp may hit it with one sample of many, and a few such pixels may dominate the error,
 /// especially with stratified samples, which leave little error elsewhere. But the next pixel shows the lamp's
@@ -67,7 +67,7 @@ pub(super) fn is_find(brightness: f64, others: f64, beside: f64) -> bool {
     brightness - others > 2.0 * (beside - others).max(0.0)
 }
 
-/// The maximum over the up to eight neighbours at distance `apart` along one axis or both.
+/// The maximum over the up to eight neighbors at distance `apart` along one axis or both.
 #[inline]
 pub(super) fn beside(shown: &[f64], width: usize, x: usize, y: usize, apart: usize) -> f64 {
     let height = shown.len() / width;
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!([at(0, 0, 1), at(2, 1, 1), at(4, 3, 1), at(0, 3, 1)], [6.0, 13.0, 18.0, 16.0]);
         assert_eq!([at(0, 0, 2), at(2, 1, 2), at(4, 3, 2), at(0, 0, 8)], [12.0, 19.0, 17.0, 0.0]);
         assert!(is_find(2.1, 0.0, 1.0) && !is_find(2.0, 0.0, 1.0) && !is_find(0.0, 0.0, 0.0));
-        // Slightly brighter than its neighbours, and than darker ones.
+        // Slightly brighter than its neighbors, and than darker ones.
         assert!(is_find(1.001, 1.0, 1.0) && is_find(1.001, 1.0, 0.5));
     }
 }

@@ -344,7 +344,7 @@ impl Bench<'_> {
     }
 
     /// Takes the samples, adds their radiance to their cells, and clears the batch. Returns whether it did; results of
-    /// a cancelled integrator are discarded.
+    /// a canceled integrator are discarded.
     fn develop(
         &mut self,
         sampler: &CameraSampler,
@@ -378,7 +378,7 @@ impl Bench<'_> {
                     let seen = if weight == 0.0 { None } else { radiance.next() };
                     let seen = seen.copied().unwrap_or(Rgb::ZERO);
                     match light {
-                        // A wavelength's colour is negative in some channels.
+                        // A wavelength's color is negative in some channels.
                         None if self.signed => tile.add_with(run.cell, Rgb::ZERO, weight, seen * weight),
                         None => tile.add(run.cell, seen, weight),
                         Some(light) if self.signed => {

@@ -159,7 +159,7 @@ fn variance(tile: &FilmTile, pixel: usize) -> Rgb {
     spread / (batches * (batches - 1.0) * f64::from(BATCH).powi(2))
 }
 
-/// Mean of a pixel and its neighbours within the part.
+/// Mean of a pixel and its neighbors within the part.
 fn around(means: &[Rgb], [width, height]: [u32; 2], pixel: usize) -> Rgb {
     let (x, y) = (pixel as u32 % width, pixel as u32 / width);
     let span = |at: u32, size: u32| at.saturating_sub(1)..(at + 2).min(size);

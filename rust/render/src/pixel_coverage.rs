@@ -90,7 +90,7 @@ fn add(cover: &mut Cover, shape: u32, share: f64) {
     }
 }
 
-/// Mean over the cells with samples, like a film's colours.
+/// Mean over the cells with samples, like a film's colors.
 fn of_pixel(cells: &[(u32, Cover)]) -> Cover {
     let counted = cells.iter().filter(|(count, _)| *count > 0).count().max(1) as f64;
     let mut cover = Cover::new();

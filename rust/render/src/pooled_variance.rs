@@ -1,4 +1,4 @@
-//! Per-pixel uncertainty from few batches, pooled with neighbours.
+//! Per-pixel uncertainty from few batches, pooled with neighbors.
 
 use super::Film;
 use super::film::PixelStatistics;
@@ -11,16 +11,16 @@ use raywright_optics::Rgb;
 pub struct Uncertainty {
     /// Unbiased variance of its mean, from its own batches.
     pub variances: Vec<Rgb>,
-    /// Variance pooled with neighbours; a confidence interval is its square root times Student's t.
+    /// Variance pooled with neighbors; a confidence interval is its square root times Student's t.
     pub pooled: Vec<Rgb>,
     /// Degrees of freedom of that t.
     pub degrees: Vec<f64>,
 }
 
-/// Radius of the pooled neighbourhood.
+/// Radius of the pooled neighborhood.
 const AWAY: usize = 2;
 
-/// Maximum degrees of freedom from neighbours. Beyond it t barely changes, and a pixel with as many of its own still
+/// Maximum degrees of freedom from neighbors. Beyond it t barely changes, and a pixel with as many of its own still
 /// has half the weight.
 const MOST: f64 = 60.0;
 
@@ -31,8 +31,8 @@ const MOST: f64 = 60.0;
 /// all samples. Only its reduction by stratification, a ratio, depends on batches. This ratio varies with the visible
 /// content, so it is similar in adjacent pixels.
 ///
-/// The similarity is estimated from the picture. A pixel's ratio is modelled as a realisation around the mean of its
-/// neighbours, distributed as inverse χ² with `d0` degrees of freedom. `d0` explains the scatter of log ratios about
+/// The similarity is estimated from the picture. A pixel's ratio is modeled as a realization around the mean of its
+/// neighbors, distributed as inverse χ² with `d0` degrees of freedom. `d0` explains the scatter of log ratios about
 /// that mean beyond the scatter from their own degrees `d`. Given the pixel's own ratio, the posterior ratio is a
 /// weighted mean of both. The error of the pixel's mean over the resulting standard error follows Student's t with `d +
 /// d0` degrees (Smyth, "Linear Models and Empirical Bayes Methods for Assessing Differential Expression", 2004). If
@@ -72,7 +72,7 @@ fn log_ratio(spread: &PixelStatistics) -> Option<f64> {
     (half > 0.0 && alone > 0.0).then(|| (variance / alone).max(1e-12).ln() - digamma(half) + half.ln())
 }
 
-/// Mean of each pixel's neighbours, without itself, if there are enough.
+/// Mean of each pixel's neighbors, without itself, if there are enough.
 fn around(logs: &[Option<f64>], width: usize) -> Vec<Option<f64>> {
     let height = logs.len() / width.max(1);
     let near = |at: usize, size: usize| at.saturating_sub(AWAY)..(at + AWAY + 1).min(size);
@@ -90,7 +90,7 @@ fn around(logs: &[Option<f64>], width: usize) -> Vec<Option<f64>> {
     parallel::collect(logs.len(), mean)
 }
 
-/// Degrees of freedom that the mean of the neighbours is worth.
+/// Degrees of freedom that the mean of the neighbors is worth.
 fn prior(spreads: &[PixelStatistics], logs: &[Option<f64>], around: &[Option<f64>]) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for ((spread, log), around) in spreads.iter().zip(logs).zip(around) {

@@ -233,7 +233,7 @@ impl Rendering {
         row
     }
 
-    /// Serialises the render, without its scene and picture size.
+    /// Serializes the render, without its scene and picture size.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut to = Writer::default();
         to.word(self.film.side());

@@ -64,8 +64,8 @@ impl Epoch {
     }
 }
 
-/// Dither added to a number of samples before rounding down. It is uniform over neighbours, so that the total is hardly
-/// changed (the R2 sequence of Roberts, 2018), and offset by one half between the halves of a pixel. Neighbours are
+/// Dither added to a number of samples before rounding down. It is uniform over neighbors, so that the total is hardly
+/// changed (the R2 sequence of Roberts, 2018), and offset by one half between the halves of a pixel. Neighbors are
 /// patches of `patch` pixels per side.
 pub(super) fn dither((x, y): (u32, u32), patch: u32, half: usize) -> f64 {
     let (x, y) = (x / patch, y / patch);

@@ -84,7 +84,7 @@ impl<'a> LightTracer<'a> {
     }
 
     /// Contributions of light paths to samples with these numbers, computed by the current thread pool or by this
-    /// thread alone. Invalid once cancelled.
+    /// thread alone. Invalid once canceled.
     pub fn trace(&self, numbers: Range<u32>, alone: bool, cancel: &Cancel) -> Brought {
         let paths = self.pixel_count() as u32;
         let of_number = |number: u32| (0..paths.div_ceil(TOGETHER)).map(move |chunk| (number, chunk));

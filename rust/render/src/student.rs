@@ -56,7 +56,7 @@ fn halved([mut low, mut high]: [f64; 2], is_below: impl Fn(f64) -> bool) -> f64 
     low
 }
 
-/// Probability that |t| exceeds `t`: a regularised incomplete beta function, by its continued fraction (Didonato and
+/// Probability that |t| exceeds `t`: a regularized incomplete beta function, by its continued fraction (Didonato and
 /// Morris, 1992).
 fn outside(t: f64, degrees: f64) -> f64 {
     let x = degrees / (degrees + t * t);

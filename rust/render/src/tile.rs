@@ -335,7 +335,7 @@ impl FilmTile {
         self.dropped += count;
     }
 
-    /// Maximum number of samples of a cell in serialised data, so that sums cannot overflow.
+    /// Maximum number of samples of a cell in serialized data, so that sums cannot overflow.
     pub(super) const MOST: u32 = u32::MAX / 4;
 
     /// Writes all its sums as bytes.

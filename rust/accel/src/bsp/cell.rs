@@ -44,7 +44,7 @@ impl BspCell {
         ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [least, greatest]| [a.min(least), b.max(greatest)])
     }
 
-    /// Estimate the surface area on either side of a plane. The cell is modelled as a prism normal to the plane, as
+    /// Estimate the surface area on either side of a plane. The cell is modeled as a prism normal to the plane, as
     /// wide as the cell's projection: each side has two ends, and its fraction of the lateral surface.
     ///
     /// None if the cell extends less than `least` on a side.

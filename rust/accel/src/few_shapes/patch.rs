@@ -2,7 +2,7 @@
 
 use raywright_base::math::DVec3;
 
-/// Half of the distance between neighbouring f32 numbers in [1, 2).
+/// Half of the distance between neighboring f32 numbers in [1, 2).
 pub(super) const UNIT: f32 = 1.0 / (1u32 << 24) as f32;
 
 /// A 2D line as a normal and an offset: a point's signed distance is its dot product with the normal, less the offset.

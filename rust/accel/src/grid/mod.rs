@@ -14,7 +14,7 @@
 //! content that no hit is outside their intervals.
 //!
 //! The bound. Let v = 2⁻²⁴, all lengths be in box units, and r be the inverse of the direction along an axis, as
-//! [`SlabRay`] has it. Planes are at most P = 2 from the centre, plus a little. A ray that is not far starts at most 8
+//! [`SlabRay`] has it. Planes are at most P = 2 from the center, plus a little. A ray that is not far starts at most 8
 //! radii away, O = 16, and its reach is R = 18. In units of v·|r|, a plane's computed t errs by 2R for r; by 4O for the
 //! shift −o·r (o is rounded, the product, `near` and `far`, and their sum); by 2·4 for i · (width · r); by P + (P + O)
 //! for low · r and its sum with the shift; and by R for the last sum: 146. So the ray is 146v from the plane's assumed

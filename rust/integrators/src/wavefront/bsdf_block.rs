@@ -27,7 +27,7 @@ pub(super) struct BsdfBlock<'a> {
     /// Of the paths, the ratio of radiance at their start to radiance here, and [`Flags`].
     pub scale: [f32; LANES],
     pub flags: [u32; LANES],
-    /// Widths of the bundles of neighbouring rays at the surfaces, 0 where none are known, and how much wider these get
+    /// Widths of the bundles of neighboring rays at the surfaces, 0 where none are known, and how much wider these get
     /// by length.
     pub width: [f32; LANES],
     pub spread: [f32; LANES],

@@ -22,7 +22,7 @@ pub(super) struct PathQueue {
     /// How much denser its directions were drawn than surfaces scatter into them ([`super::guided`]); where paths are
     /// guided.
     pub aimed: Vec<f32>,
-    /// The bundle of neighbouring rays at the origin of its ray: how wide it is, and how much wider it gets by length;
+    /// The bundle of neighboring rays at the origin of its ray: how wide it is, and how much wider it gets by length;
     /// where textures are filtered.
     pub width: Vec<f32>,
     pub spread: Vec<f32>,

@@ -350,7 +350,7 @@ impl<'a> WavefrontWorker<'a> {
     }
 }
 
-/// The kind of the BSDF of a primitive. Matte is what reflects one colour everywhere by its own normal.
+/// The kind of the BSDF of a primitive. Matte is what reflects one color everywhere by its own normal.
 fn kind_of(scene: &Scene, primitive: u32) -> usize {
     let (plan, geometry) = (scene.plan(), scene.geometry());
     let shape = geometry.locate(primitive).0;

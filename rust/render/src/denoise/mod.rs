@@ -23,7 +23,7 @@ use raywright_optics::Rgb;
 /// Bandwidths of the filters, in standard deviations of the noise within which pixels count as equal.
 const BANDWIDTHS: [f64; 2] = [0.5, 1.0];
 
-/// Filters each half of a picture: unfiltered, and with weights by similarity of colour and features.
+/// Filters each half of a picture: unfiltered, and with weights by similarity of color and features.
 ///
 /// The filter is the nonlinearly weighted first-order regression of Bitterli, Rousselle, Moon, Iglesias-Guitián, Adler,
 /// Mitchell, Jarosz and Novák ("Nonlinearly Weighted First-Order Regression for Denoising Monte Carlo Renderings",

@@ -15,7 +15,7 @@ use raywright_optics::Rgb;
 pub struct Denoised {
     /// The picture.
     pub means: Vec<Rgb>,
-    /// Squared errors per pixel, averaged over neighbours.
+    /// Squared errors per pixel, averaged over neighbors.
     pub squares: Vec<Rgb>,
     /// Error of the picture.
     pub error: ErrorEstimate,
@@ -34,7 +34,7 @@ const REACH: usize = 3;
 /// of theirs minus their variance about it. No variance needs to be known, and filters may be arbitrary.
 ///
 /// Denominators are as in all error estimates (`denominators.rs`), except that the filtered picture replaces the
-/// neighbours.
+/// neighbors.
 pub fn settle(halves: &Halves, candidates: &[Vec<Vec<Rgb>>; 2]) -> Denoised {
     let size = Size { width: halves.width, height: halves.height };
     let Outcome { picture, errors, apart } = outcome(halves, candidates, size);
@@ -94,8 +94,8 @@ fn smooth(values: &[Rgb], size: Size) -> Vec<Rgb> {
 ///
 /// Their noise is independent except within patches, so their squares give the noise of the sum. The uncertainty of
 /// denominators is the change that alternatives would make: those of the filtered picture alone, which may be too
-/// bright by leaked light, with and without neighbours, and those of the noisy picture. A few dominant pixels are
-/// reported if they contain light that their neighbours do not show.
+/// bright by leaked light, with and without neighbors, and those of the noisy picture. A few dominant pixels are
+/// reported if they contain light that their neighbors do not show.
 ///
 /// The squares are skewed: if the sum happens to be small, so are the squares that estimate its noise. So the upper end
 /// uses the ratio that a logarithm with the same uncertainty would have.

@@ -3,7 +3,7 @@
 use super::Filter;
 use std::boxed::Box as Boxed;
 
-/// Another filter; near the edge of the film, pixels renormalise its part within the film.
+/// Another filter; near the edge of the film, pixels renormalize its part within the film.
 #[derive(Debug)]
 pub struct Cropped(pub Boxed<dyn Filter>);
 

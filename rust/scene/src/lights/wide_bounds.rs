@@ -100,7 +100,7 @@ impl WideBounds {
 
 loops! {
     /// All light is placed at the centers. The angles to the lights' normals and to the receiver's horizon are the most
-    /// favourable within the bounds. Sines and cosines are multiplied by the distance, which avoids divisions and keeps
+    /// favorable within the bounds. Sines and cosines are multiplied by the distance, which avoids divisions and keeps
     /// the square roots independent.
     fn importances(of: &WideBounds, receiver: &Receiver, found: &mut [f32; WIDTH]) {
         let Receiver { position, normal, is_free, scale } = receiver;

@@ -22,7 +22,7 @@ pub struct Split {
 }
 
 impl Split {
-    /// The cheapest plane; None if no plane separates the centres.
+    /// The cheapest plane; None if no plane separates the centers.
     #[inline(always)]
     pub fn best(references: &[Reference], extents: &Extents, bins: usize, workspace: &mut Bins) -> Option<Self> {
         // Fewer bins are as good for small nodes, which are numerous.
@@ -71,7 +71,7 @@ impl Split {
 /// Adding this rounds to an integer in the lower bits, which is faster than a conversion.
 pub const WHOLE: f32 = 1.5 * (1 << 23) as f32;
 
-/// The map from a centre to its bin. Binning and partitioning round in the same way, so they always agree.
+/// The map from a center to its bin. Binning and partitioning round in the same way, so they always agree.
 #[derive(Clone, Copy)]
 struct Binning {
     origin: Vec4,
@@ -81,7 +81,7 @@ struct Binning {
 impl Binning {
     fn new(centres: &Bounds, bins: usize) -> Self {
         let size = centres.size();
-        // Just under the number of bins, so that the last centre falls into the last bin. Flat axes use bin 0 alone.
+        // Just under the number of bins, so that the last center falls into the last bin. Flat axes use bin 0 alone.
         let scale = Vec4::splat(bins as f32 * (1.0 - 1e-6)) / size;
         let usable = scale.is_finite_mask() & size.cmpgt(Vec4::ZERO);
         Self { origin: centres.least(), scale: Vec4::select(usable, scale, Vec4::ZERO) }
@@ -126,7 +126,7 @@ impl Bins {
 
     #[inline(always)]
     fn add(&mut self, references: &[Reference], binning: &Binning) {
-        // Neighbours often share a bin, which makes the second wait for the first: alternate with distant ones.
+        // Neighbors often share a bin, which makes the second wait for the first: alternate with distant ones.
         let (first, second) = references.split_at(references.len() / 2);
         for (i, r) in second.iter().enumerate() {
             self.add_one(r, binning);

@@ -97,7 +97,7 @@ impl Chopped {
             axes[count] = axis;
             count += 1;
         }
-        // Neighbours often share a bin, which makes the second wait for the first: alternate with distant ones.
+        // Neighbors often share a bin, which makes the second wait for the first: alternate with distant ones.
         let (first, second) = references.split_at(references.len() / 2);
         for (i, r) in second.iter().enumerate() {
             self.add_one(r, grid, &axes[..count], shapes);

@@ -51,7 +51,7 @@ pub fn sorted(references: &[Reference], bits: Bits, work: Work) -> Result<Vec<(u
     let places = (1u64 << (bits.count() / 3)) as f64;
     let size = (max - min).max_element();
     let scale = if size > 0.0 { places / size } else { 0.0 };
-    // The greatest centre belongs to the last cell.
+    // The greatest center belongs to the last cell.
     let last = places as u64 - 1;
     let code = |r: &Reference| {
         let [x, y, z, _] = r.centre().to_array();

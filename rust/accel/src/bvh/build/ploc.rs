@@ -1,8 +1,8 @@
 //! Bottom-up build by parallel locally-ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering
 //! for Bounding Volume Hierarchy Construction", 2018).
 //!
-//! Clusters are in Morton order, initially of one primitive each. In every round each cluster finds the neighbour
-//! within a radius with which it forms the smallest box. Mutual nearest neighbours merge. Ties are broken by the
+//! Clusters are in Morton order, initially of one primitive each. In every round each cluster finds the neighbor
+//! within a radius with which it forms the smallest box. Mutual nearest neighbors merge. Ties are broken by the
 //! positions alone, in the same way for both partners. So at least one pair merges per round, all of them do for
 //! coincident primitives, and the result does not depend on threads.
 //!
@@ -83,7 +83,7 @@ struct ClusterPair {
     first: u32,
 }
 
-/// A neighbour and its distance.
+/// A neighbor and its distance.
 #[derive(Clone, Copy)]
 struct Neighbour {
     area: f32,
@@ -104,7 +104,7 @@ impl Neighbour {
     }
 }
 
-/// The nearest neighbour of each cluster, among at least two.
+/// The nearest neighbor of each cluster, among at least two.
 fn nearest(clusters: &[Cluster], radius: usize) -> Vec<u32> {
     let mut sought = vec![0; clusters.len()];
     parallel::each_chunk_mut(&mut sought, SHARE, &|start, sought| {
@@ -134,7 +134,7 @@ fn beside(count: usize) -> Vec<u32> {
     (0..count).map(|place| if place ^ 1 < count { place ^ 1 } else { place } as u32).collect()
 }
 
-/// The clusters after merging mutual nearest neighbours, each at the position of its first member.
+/// The clusters after merging mutual nearest neighbors, each at the position of its first member.
 fn merged(clusters: &[Cluster], sought: &[u32], leaves: usize, pairs: &mut Vec<ClusterPair>) -> Vec<Cluster> {
     let agree = |place: usize| sought[sought[place] as usize] as usize == place && sought[place] as usize != place;
     let is_first = |place: &usize| agree(*place) && *place < sought[*place] as usize;

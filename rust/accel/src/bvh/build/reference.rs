@@ -125,7 +125,7 @@ impl Reference {
         self.bounds.min.w as u32 | (self.bounds.neg_max.w as u32) << 16
     }
 
-    /// Twice the box's centre.
+    /// Twice the box's center.
     #[inline(always)]
     pub fn centre(&self) -> Vec4 {
         self.bounds.min - self.bounds.neg_max
@@ -139,12 +139,12 @@ impl Reference {
     }
 }
 
-/// The bounds of references, and of their (doubled) centres.
+/// The bounds of references, and of their (doubled) centers.
 #[derive(Clone, Copy)]
 pub struct Extents {
     /// The bounds of the boxes.
     pub all: Bounds,
-    /// The bounds of the centres, doubled.
+    /// The bounds of the centers, doubled.
     pub centres: Bounds,
 }
 
@@ -207,7 +207,7 @@ pub fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> b
     left
 }
 
-/// Split at the median along the longest axis of the centres; equal centres are ordered by primitive.
+/// Split at the median along the longest axis of the centers; equal centers are ordered by primitive.
 pub fn median(references: &mut [Reference], centres: &Bounds) -> usize {
     let axis = centres.longest();
     let middle = references.len() / 2;

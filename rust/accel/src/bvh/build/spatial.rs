@@ -45,7 +45,7 @@ const MOST: usize = (1 << 28) - 2;
 const OVERLAP: f32 = 1e-3;
 
 /// The overlap must also exceed this fraction of the set's own area. The saving is at most the overlap, and in a
-/// regular mesh all neighbours overlap slightly.
+/// regular mesh all neighbors overlap slightly.
 const OWN_OVERLAP: f32 = 0.2;
 
 /// Build a tree over boxes, skipping empty ones. A primitive may be in several leaves, each with the box of one of its

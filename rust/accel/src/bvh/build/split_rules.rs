@@ -1,4 +1,4 @@
-//! Top-down splits along the longest axis of the centres without a cost model, as in textbooks (Kay and Kajiya, "Ray
+//! Top-down splits along the longest axis of the centers without a cost model, as in textbooks (Kay and Kajiya, "Ray
 //! Tracing Complex Scenes", 1986): at the midpoint, the median, or the mean.
 
 use super::reference::{Extents, Reference, SHARE, median, partition, references};
@@ -13,11 +13,11 @@ use std::ops::Range;
 /// The position of the split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SplitRule {
-    /// Midway between the first centre and the last; the median if that separates nothing.
+    /// Midway between the first center and the last; the median if that separates nothing.
     Midpoint,
     /// Equal numbers on both sides, which gives the least depth.
     Median,
-    /// The mean of the centres; the median if that separates nothing.
+    /// The mean of the centers; the median if that separates nothing.
     Mean,
 }
 
@@ -104,14 +104,14 @@ impl Set for Half<'_> {
     }
 }
 
-/// The midpoint of the centres along an axis.
+/// The midpoint of the centers along an axis.
 fn middle(extents: &Extents, axis: usize) -> f32 {
     let Aabb { min, max } = extents.centres.aabb();
     // Halved first, since the sum may overflow.
     min[axis] / 2.0 + max[axis] / 2.0
 }
 
-/// The mean of the centres along an axis. Sums over fixed chunks make it independent of the number of threads.
+/// The mean of the centers along an axis. Sums over fixed chunks make it independent of the number of threads.
 fn mean(references: &[Reference], axis: usize) -> f32 {
     let sum = |share: Range<usize>| references[share].iter().map(|r| f64::from(r.centre_on(axis))).sum::<f64>();
     let shares = parallel::map_chunks(references.len(), SHARE, sum);

@@ -35,7 +35,7 @@ pub fn build<'a>(boxes: impl Into<Cow<'a, [Aabb]>>, leaves: &Leaves, work: Work)
     }
     let count = references.len();
     let sorted = |axis: usize| {
-        // In the order of f32::total_cmp; equal centres are ordered by index.
+        // In the order of f32::total_cmp; equal centers are ordered by index.
         let rank = |x: f32| x.to_bits() ^ if x.is_sign_negative() { u32::MAX } else { 1 << 31 };
         let key = |i: usize| u64::from(rank(references[i].centre_on(axis))) << 32 | i as u64;
         let mut keys = parallel::collect(count, key);
@@ -67,7 +67,7 @@ struct SweepContext<'a> {
 
 /// A set of primitives along one axis.
 struct Axis<'a> {
-    /// Sorted by centre, then by index.
+    /// Sorted by center, then by index.
     order: &'a mut [u32],
     /// Scratch space of the same length.
     space: &'a mut [u32],
@@ -141,7 +141,7 @@ impl Sweep<'_> {
         best
     }
 
-    /// The axis of greatest extent of the centres.
+    /// The axis of greatest extent of the centers.
     fn longest(&self) -> usize {
         let centre = |axis: usize, i: u32| self.shared.references[i as usize].centre_on(axis);
         let ends = |side: usize| {

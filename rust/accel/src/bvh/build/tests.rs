@@ -239,7 +239,7 @@ fn builds_tell_all_that_they_do_and_end_when_they_are_stopped() {
 
 #[test]
 fn halves_are_made_where_they_say() {
-    // For centres 0, 1, 2, 9 the midpoint is 4.5, the mean 3, and the median separates two from two.
+    // For centers 0, 1, 2, 9 the midpoint is 4.5, the mean 3, and the median separates two from two.
     let boxes = [0.0, 1.0, 2.0, 9.0].map(|x| Aabb::around([Vec3::new(x, 0.0, 0.0)]));
     for (way, left) in [(SplitRule::Midpoint, 2.0), (SplitRule::Mean, 2.0), (SplitRule::Median, 1.0)] {
         let bvh = split_rules::build(&boxes, way, &Leaves::for_blocks(1), Work::UNWATCHED).unwrap();

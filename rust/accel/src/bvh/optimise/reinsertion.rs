@@ -4,7 +4,7 @@
 //! The cost of a tree is the area of its inner nodes. Removing a subtree eliminates its parent and shrinks its
 //! ancestors; reinserting it creates a new parent and enlarges the nodes above. In every round, branch and bound finds
 //! the best place for each of the largest nodes, in parallel and in the unchanged tree. Then the moves are made by
-//! decreasing gain, except those whose neighbourhood an earlier move has changed. So the result does not depend on the
+//! decreasing gain, except those whose neighborhood an earlier move has changed. So the result does not depend on the
 //! number of threads.
 //!
 //! Three details differ from the paper. Subtrees that fit one block of triangles are moved as a whole: a single
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn a_box_in_the_wrong_place_is_moved() {
-        // Two pairs of neighbours, each separated by the root.
+        // Two pairs of neighbors, each separated by the root.
         let point = |x: f32| Aabb { min: Vec3::new(x, 0.0, 0.0), max: Vec3::new(x + 0.1, 1.0, 1.0) };
         let boxes = [0.0, 10.0, 0.2, 10.2].map(point);
         let node = |a: usize, b: usize| boxes[a].union(boxes[b]);

@@ -3,7 +3,7 @@
 //!
 //! One thread is one order of the leaves, which suits rays in that direction. So there are several threads, one for
 //! each of six or eight classes of directions (Hachisuka, "Implementing a Photorealistic Rendering System using GLSL",
-//! 2015). In each, the child whose centre is nearer in that direction goes first.
+//! 2015). In each, the child whose center is nearer in that direction goes first.
 
 use super::numbered_leaves::Numbered;
 use crate::bvh::BinaryBvh;
@@ -98,7 +98,7 @@ fn thread(tree: &Numbered, direction: Vec3) -> Vec<Link> {
             continue;
         }
         let [a, b] = node.children();
-        // Doubled centres.
+        // Doubled centers.
         let at = |child: usize| (nodes[child].min + nodes[child].max).dot(direction);
         let (near, far) = if at(a) <= at(b) { (a, b) } else { (b, a) };
         links[i].hit = near as u32;

@@ -190,7 +190,7 @@ struct Triangles<T> {
 }
 
 impl<T: Real> Triangles<T> {
-    /// Load the triangles of the rays in `hits`. Neighbours often hit the same one, which is loaded once.
+    /// Load the triangles of the rays in `hits`. Neighbors often hit the same one, which is loaded once.
     #[inline(always)]
     fn load<const N: usize, L: Leaves<N, Real = T>, S: Lanes<RAYS>>(
         &mut self,

@@ -18,11 +18,11 @@ pub enum Builder {
     /// 2006).
     #[default]
     Sah,
-    /// The median of the primitives' centres, along the cell's longest axis.
+    /// The median of the primitives' centers, along the cell's longest axis.
     Median,
     /// The middle of the cell's longest axis.
     Middle,
-    /// The median of the primitives' centres, with axes in turn (Bentley, "Multidimensional Binary Search Trees Used
+    /// The median of the primitives' centers, with axes in turn (Bentley, "Multidimensional Binary Search Trees Used
     /// for Associative Searching", 1975).
     Cycle,
 }
