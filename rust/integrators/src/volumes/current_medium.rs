@@ -10,32 +10,33 @@ use raywright_scene::media::Medium;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Filled {
     priority: i32,
-    ior: Option<f64>,
+    /// Index of refraction; 0 if it is that of the surroundings.
+    ior: f64,
     dispersion: Dispersive,
     /// Primitive that identifies the shape, and the primitive inside an instance.
     shape: (u32, u32),
 }
 
 impl Filling for Filled {
-    const NONE: Self = Self { priority: i32::MIN, ior: None, dispersion: Dispersive::NONE, shape: (u32::MAX, 0) };
+    const NONE: Self = Self { priority: i32::MIN, ior: 0.0, dispersion: Dispersive::NONE, shape: (u32::MAX, 0) };
 
     fn of(scene: &Scene, hit: &Hit) -> Option<Self> {
         let material = scene.material_of(hit);
         let (priority, ior, dispersion) = match material.interior() {
-            Some(interior) => (interior.priority, Some(interior.ior), interior.dispersion),
-            None => (material.boundary()?, None, Dispersive::NONE),
+            Some(interior) => (interior.priority, interior.ior, interior.dispersion),
+            None => (material.boundary()?, 0.0, Dispersive::NONE),
         };
         Some(Self { priority, ior, dispersion, shape: scene.geometry().first_alike(hit.primitive, hit.inner) })
     }
 
     /// Compare by priority, then by higher index of refraction, then by later description.
     fn is_above(&self, other: &Self) -> bool {
-        let order = |filled: &Self| (filled.priority, filled.ior.unwrap_or(0.0), filled.shape);
+        let order = |filled: &Self| (filled.priority, filled.ior, filled.shape);
         order(self) > order(other)
     }
 
     fn ior(&self) -> Option<f64> {
-        self.ior
+        (self.ior > 0.0).then_some(self.ior)
     }
 
     fn dispersion(&self) -> Dispersive {

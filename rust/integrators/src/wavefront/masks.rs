@@ -80,6 +80,18 @@ impl WavefrontWorker<'_> {
         }
     }
 
+    /// Lets shadow rays to lamps with masks meet these lamps: light of the far side comes through the near one.
+    pub(super) fn meet_masked_lamps(&mut self) {
+        let (Some(Masks { shapes, .. }), geometry) = (&self.masks, self.scene.geometry()) else { return };
+        let rays = &mut self.shadows.rays;
+        for [_, lamp] in &mut rays.misses[..rays.len] {
+            if *lamp != Ray::NO_TRIANGLE && geometry.shape(*lamp).is_some() && shapes[geometry.locate(*lamp).0 as usize]
+            {
+                *lamp = Ray::NO_TRIANGLE;
+            }
+        }
+    }
+
     /// Stage: what arrives along shadow rays that something blocks is dimmed by the masks on the way, and added.
     pub(super) fn dim_by_masks(&mut self, radiance: &mut [Rgb]) {
         let (Some(Masks { shadows, .. }), queue) = (&mut self.masks, &self.shadows) else { return };

@@ -42,7 +42,7 @@ pub(super) struct WavefrontWorker<'a> {
     pub(super) samplers: Option<SamplerColumns>,
     /// What each path hits first.
     pub(super) primitives: Vec<u32>,
-    /// All of these hits, in scenes with instances or motion.
+    /// All of these hits, in scenes where the primitive does not tell the rest.
     pub(super) hits: Vec<Hit>,
     pub(super) is_occluded: Vec<bool>,
     /// The paths that have met a surface, by the kind of BSDF there, and those that have left the scene. Where all are
@@ -106,7 +106,8 @@ impl<'a> WavefrontWorker<'a> {
         let are_flat = scene.plan().is_constant() && !(needs.smooth || needs.instances || needs.points.width);
         let scatters = needs.scattering || guide.is_some() || !are_flat;
         let normal = scene.lights().ask_for_normals();
-        let hits = needs.instances || needs.motion;
+        // A ray that passes a mask may come to the same shape again.
+        let hits = needs.instances || needs.motion || needs.masks && needs.shapes;
         let (aimed, width, time) = (guide.is_some(), needs.points.width, needs.motion);
         let extra = Extra { normal, state: scatters, aimed, width, time, hits };
         let kinds = if scatters { Plan::KINDS } else { 1 };
@@ -286,6 +287,7 @@ impl<'a> WavefrontWorker<'a> {
 
     /// Stage: shadow rays are followed, and what arrives along those that nothing blocks is added.
     fn follow_shadows(&mut self, radiance: &mut [Rgb]) {
+        self.meet_masked_lamps();
         let queue = &self.shadows;
         if self.shadows_block {
             self.scene.are_occluded(self.level, &queue.rays, &mut self.is_occluded);

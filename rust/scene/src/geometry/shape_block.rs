@@ -79,12 +79,13 @@ impl Geometry {
         let mut any = false;
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
             match self.shape(surfaces.primitive[lane]).and_then(Shape::ball) {
-                Some((center, radius)) => {
+                // A hit that is known may be on the far side: the ray has passed a mask on the near one.
+                Some((center, radius)) if hits.is_empty() => {
                     spheres.center.set(lane, center);
                     (spheres.radius[lane], spheres.is_here[lane]) = (radius, true);
                     any = true;
                 }
-                None => self.meet_other((rays, hits), lane, surfaces),
+                _ => self.meet_other((rays, hits), lane, surfaces),
             }
         }
         if any {

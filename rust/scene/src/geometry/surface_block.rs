@@ -139,7 +139,7 @@ loops! {
 
 impl Geometry {
     /// What rays meet, by the primitives that each hits first; `which` are their places in the queue, at most sixteen.
-    /// The last stands in the lanes that are left. In a scene with instances there are all hits.
+    /// The last stands in the lanes that are left. Where primitives do not tell all of the hits, these are given.
     pub fn meet_block(
         &self,
         level: Level,
