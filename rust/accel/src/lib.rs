@@ -55,7 +55,7 @@ use filtered_query::Kept;
 use parity::WaysOut;
 use query::{Answers, CostQuery};
 use rare_query::RareQuery;
-use raywright_base::math::{DVec3, Hit, HitColumns, Ray, RayColumns, Region};
+use raywright_base::math::{DVec3, Hit, HitColumns, PlacedHits, Ray, RayColumns, Region};
 use raywright_base::parallel::{self, CHUNK};
 use raywright_base::work::Work;
 use raywright_shapes::triangle::SolidCone;
@@ -204,6 +204,16 @@ pub trait Accelerator: Send + Sync {
 pub trait ByColumns: Send + Sync {
     /// The closest hit of each ray.
     fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>);
+
+    /// Find the closest hit of each ray, and store it at the ray's place.
+    fn intersect_placed(&self, rays: &RayColumns<'_>, mut hits: PlacedHits<'_>) {
+        let count = rays.len();
+        let (mut t, mut uv, mut primitive) = (vec![0.0; count], vec![[0.0; 2]; count], vec![0; count]);
+        self.intersect(rays, HitColumns { t: &mut t, uv: &mut uv, primitive: &mut primitive });
+        for i in 0..count {
+            hits.put(i, t[i], uv[i], primitive[i]);
+        }
+    }
 
     /// Find the closest hit of each ray, as an array of structures.
     fn first_hits(&self, rays: &RayColumns<'_>, hits: &mut [Hit]);

@@ -6,7 +6,7 @@ use super::rays::{BATCH, RayArrays};
 use raywright::accel::ByColumns;
 use raywright::math::coherence::is_coherent;
 use raywright::math::ray_sort::{Gathering, RUN, RunBounds, WINDOW};
-use raywright::math::{HitColumns, Numbers, RayColumns, Run, Tiling, Vectors};
+use raywright::math::{HitColumns, Numbers, PlacedHits, RayColumns, Run, Tiling, Vectors};
 use raywright::scene::Geometry;
 use raywright::simd::{ask_for, columns_of_four};
 use std::cell::Cell;
@@ -41,6 +41,20 @@ impl RayChunk<'_> {
         if at < self.len {
             each(Run { place: self.from + at, at, len: self.len - at });
         }
+    }
+
+    /// The place of each run, if the order is not sequential and all runs are of [`PlacedHits::RUN`].
+    fn places<'a>(&self, room: &'a mut Vec<usize>) -> Option<&'a [usize]> {
+        if self.is_sequence() || !self.len.is_multiple_of(PlacedHits::RUN) {
+            return None;
+        }
+        let places = some(room, self.len / PlacedHits::RUN);
+        let mut are_whole = true;
+        self.runs(|Run { place, at, len }| {
+            are_whole &= len == PlacedHits::RUN && at.is_multiple_of(PlacedHits::RUN);
+            places[at / PlacedHits::RUN] = place;
+        });
+        are_whole.then_some(places)
     }
 
     /// Gathers values into traversal order.
@@ -82,6 +96,7 @@ struct Answers {
     primitive: Vec<i32>,
     first: Vec<u32>,
     found: Vec<bool>,
+    places: Vec<usize>,
 }
 
 thread_local! {
@@ -269,6 +284,16 @@ impl RayArrays<'_> {
     /// The closest hits of the rays from `start` on, of which there are as many as there is room for.
     pub fn closest(&self, geometry: &Geometry, tree: &dyn ByColumns, start: usize, mut to: HitParts<'_>) {
         self.columns(tree, start, to.count, |rays, part, room| {
+            let has_one_shape = geometry.shapes() == 1;
+            if let HitParts {
+                t: Some(To::Double(t)), uv: Some(To::Double(uv)), primitive: Some(primitive), shape, ..
+            } = &mut to
+                && has_one_shape
+                && let Some(places) = part.places(&mut room.places)
+            {
+                let shape = shape.as_deref_mut();
+                return tree.intersect_placed(rays, PlacedHits { t, uv, primitive, shape, places });
+            }
             let (is_direct, len, here) = (part.is_sequence(), part.len, part.from..part.from + part.len);
             let primitives = match &mut to.primitive {
                 Some(to) if is_direct => &mut to[here.clone()],
@@ -291,7 +316,6 @@ impl RayArrays<'_> {
                 };
                 tree.intersect(rays, HitColumns { t, uv, primitive: primitives });
             }
-            let has_one_shape = geometry.shapes() == 1;
             if !has_one_shape {
                 let shapes = match &mut to.shape {
                     Some(to) if is_direct => &mut to[here.clone()],

@@ -52,6 +52,48 @@ pub struct HitColumns<'a> {
     pub primitive: &'a mut [i32],
 }
 
+/// The output for closest hits of runs of four rays, each with a place of its own in longer columns.
+#[derive(Debug)]
+pub struct PlacedHits<'a> {
+    /// See [`HitColumns`].
+    pub t: &'a mut [f64],
+    /// See [`HitColumns`].
+    pub uv: &'a mut [[f64; 2]],
+    /// See [`HitColumns`].
+    pub primitive: &'a mut [i32],
+    /// The shape in a scene of one, if it is wanted: 0, or −1 for a miss.
+    pub shape: Option<&'a mut [i32]>,
+    /// The place of the first ray of each run.
+    pub places: &'a [usize],
+}
+
+impl PlacedHits<'_> {
+    /// Rays per run.
+    pub const RUN: usize = 4;
+
+    /// Store one hit, or a miss, whose primitive is −1.
+    #[inline(always)]
+    pub fn put(&mut self, i: usize, t: f64, uv: [f64; 2], primitive: i32) {
+        let place = self.places[i / Self::RUN] + i % Self::RUN;
+        (self.t[place], self.uv[place], self.primitive[place]) = (t, uv, primitive);
+        if let Some(shape) = &mut self.shape {
+            shape[place] = primitive >> 31;
+        }
+    }
+
+    /// Store a run.
+    #[inline(always)]
+    pub fn put_run(&mut self, run: usize, t: &[f64; 4], uv: &[[f64; 2]; 4], primitive: &[i32; 4]) {
+        let place = self.places[run];
+        self.t[place..][..Self::RUN].copy_from_slice(t);
+        self.uv[place..][..Self::RUN].copy_from_slice(uv);
+        self.primitive[place..][..Self::RUN].copy_from_slice(primitive);
+        if let Some(shape) = &mut self.shape {
+            shape[place..][..Self::RUN].copy_from_slice(&primitive.map(|number| number >> 31));
+        }
+    }
+}
+
 impl Vectors<'_> {
     #[inline(always)]
     fn len(&self) -> usize {

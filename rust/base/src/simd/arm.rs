@@ -72,6 +72,7 @@ impl Lanes<4> for Neon {
 
 impl Simd<4> for Neon {
     type Sixteen = Pair<Pair<Self>>;
+    const REGISTERS: u32 = 4;
 
     #[inline(always)]
     fn sixteen(self) -> Pair<Pair<Self>> {

@@ -97,6 +97,9 @@ pub trait Simd<const N: usize>: Lanes<N> {
     /// Vectors for sixteen rays, in as many registers as needed.
     type Sixteen: Lanes<16>;
 
+    /// The number of registers that they take.
+    const REGISTERS: u32;
+
     /// Convert to those vectors.
     fn sixteen(self) -> Self::Sixteen;
 

@@ -134,6 +134,7 @@ impl<const N: usize> Lanes<N> for Scalar {
 
 impl<const N: usize> Simd<N> for Scalar {
     type Sixteen = Self;
+    const REGISTERS: u32 = 16;
 
     #[cfg_attr(test, inline(never))]
     #[cfg_attr(not(test), inline(always))]

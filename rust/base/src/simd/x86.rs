@@ -144,6 +144,7 @@ impl Lanes<4> for Sse2 {
 
 impl Simd<4> for Sse2 {
     type Sixteen = Pair<Pair<Self>>;
+    const REGISTERS: u32 = 4;
 
     #[inline(always)]
     fn sixteen(self) -> Pair<Pair<Self>> {
@@ -207,6 +208,7 @@ impl Lanes<8> for Avx2 {
 
 impl Simd<8> for Avx2 {
     type Sixteen = Pair<Self>;
+    const REGISTERS: u32 = 2;
 
     #[inline(always)]
     fn sixteen(self) -> Pair<Self> {
@@ -307,6 +309,7 @@ impl Lanes<16> for Avx512 {
 
 impl Simd<8> for Avx512 {
     type Sixteen = Self;
+    const REGISTERS: u32 = 1;
 
     #[inline(always)]
     fn sixteen(self) -> Self {

@@ -9,10 +9,11 @@ use raywright_base::math::RayBatch;
 use raywright_base::simd::{Lanes, Simd};
 use raywright_shapes::triangle::{ALL, Column, EdgeRay, Leaves, RAYS, Spread};
 
-/// Return whether so few of sixteen rays visit a leaf that testing them one by one is cheaper.
+/// Return whether so few of sixteen rays visit a leaf that testing them one by one is cheaper: up to two thirds of its
+/// triangles if sixteen rays fit into a register, five sixths if they do not.
 #[inline(always)]
-pub fn are_few(asked: u32, leaf: Packed) -> bool {
-    3 * asked.count_ones() <= 2 * leaf.leaf().1
+pub fn are_few<const N: usize, S: Simd<N>>(_: S, asked: u32, leaf: Packed) -> bool {
+    6 * asked.count_ones() <= if S::REGISTERS == 1 { 4 } else { 5 } * leaf.leaf().1
 }
 
 /// The closest hits of sixteen rays so far in SoA layout; see [`Best`].

@@ -53,7 +53,7 @@ pub fn answer<const N: usize, L: Leaves<N>, S: Simd<N>, A: Answer>(
                 continue;
             }
             let from = (batch, start);
-            let changed = if are_few(active, leaf) {
+            let changed = if are_few(simd, active, leaf) {
                 if A::ANY {
                     bests.visit_alone::<true, N, L, S>(simd, bvh, &rays, from, leaf, active)
                 } else {

@@ -37,7 +37,7 @@ use collapse::Outline;
 use hit_sink::Closest;
 use node::{Child, WideNode};
 pub use objects::over as over_objects;
-use raywright_base::math::{Aabb, Axes, DVec3, Hit, HitColumns, Ray, RayBatch, RayColumns, Region};
+use raywright_base::math::{Aabb, Axes, DVec3, Hit, HitColumns, PlacedHits, Ray, RayBatch, RayColumns, Region};
 use raywright_base::parallel::{self, CHUNK};
 use raywright_base::simd::{Dispatch, Level};
 use raywright_base::work::{Stopped, Work};
@@ -200,6 +200,12 @@ where
     fn intersect(&self, rays: &RayColumns<'_>, hits: HitColumns<'_>) {
         assert_eq!(rays.len(), hits.len(), "a hit for each ray");
         let answer = Closest::Columns(hits);
+        self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer });
+    }
+
+    fn intersect_placed(&self, rays: &RayColumns<'_>, hits: PlacedHits<'_>) {
+        assert_eq!(rays.len(), hits.places.len() * PlacedHits::RUN, "a place for each four rays");
+        let answer = Closest::Placed(hits);
         self.level.dispatch(Firsts { bvh: self, rays: RayBatch::Columns(*rays), answer });
     }
 
