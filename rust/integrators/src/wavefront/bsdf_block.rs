@@ -172,7 +172,8 @@ impl<'a> BsdfBlock<'a> {
         Some((reflectance, normal.as_vec3(), is_bent))
     }
 
-    /// What arrives of light that was drawn, in some lanes, if nothing blocks it. `follows` is 1, or 0 if paths end there.
+    /// What arrives of light that was drawn, in some lanes, if nothing blocks it. `follows` is 1, or 0 if paths end
+    /// there.
     pub fn reflect(
         &self,
         level: Level,
