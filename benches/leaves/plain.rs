@@ -37,8 +37,9 @@ impl<const N: usize> Leaves<N> for PlainLeaves<N> {
     }
 
     #[inline(always)]
-    fn rays<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region) -> BlockRays {
-        <SingleLeaves<N> as Leaves<N>>::rays(simd, rays, region).believed()
+    fn take<S: Lanes<RAYS>>(simd: S, rays: &PlainRays, region: &Region, to: &mut BlockRays) {
+        <SingleLeaves<N> as Leaves<N>>::take(simd, rays, region, to);
+        to.believe();
     }
 
     #[inline(always)]

@@ -142,10 +142,9 @@ impl BlockRays {
         errors: PretestErrors { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 },
     };
 
-    /// The same rays with zero error bounds, as most ray tracers assume, to measure what that would save.
-    pub fn believed(mut self) -> Self {
+    /// Set the error bounds to zero, as most ray tracers assume, to measure what that would save.
+    pub fn believe(&mut self) {
         self.errors = PretestErrors { weight: 0.0, numerator: 0.0, least: 0.0, depth: 0.0 };
-        self
     }
 
     /// Extend the bounds to cover other rays as well.
