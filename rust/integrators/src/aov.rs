@@ -1,6 +1,6 @@
 //! Auxiliary buffers (AOVs) of the first hit.
 
-use super::nesting::indices_outside;
+use super::boundary_queries::indices_outside;
 use raywright_base::math::{Hit, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::SamplerKind;

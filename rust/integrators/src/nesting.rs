@@ -1,6 +1,5 @@
 //! Nested dielectrics: the media at a point of a path.
 
-use super::boundary_queries::BoundaryQueries;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::Dispersive;
 use raywright_scene::materials::Interior;
@@ -167,30 +166,6 @@ impl<F: Filling> MediumStack<F> {
     }
 }
 
-/// Return the index of refraction around each ray's hit, on the side away from the object's own interior. It is 1 for
-/// misses and for materials that do not depend on it. Rays start in the media at their origins.
-pub fn indices_outside(scene: &Scene, rays: &[Ray], hits: &[Hit]) -> Vec<f64> {
-    let mut found = vec![1.0; rays.len()];
-    if !scene.plan().needs().nested {
-        return found;
-    }
-    let met: Vec<usize> = (0..rays.len()).filter(|&i| hits[i].is_hit()).collect();
-    let whole: Vec<Ray> = met.iter().map(|&i| Ray { t_max: f64::INFINITY, ..rays[i] }).collect();
-    let mut media = Vec::new();
-    MediumStack::<Interior>::at(scene, &whole, &mut media);
-    let (rays, hits): (Vec<Ray>, Vec<Hit>) = met.iter().map(|&i| (rays[i], hits[i])).unzip();
-    let mut boundaries = BoundaryQueries::default();
-    boundaries.find::<Interior>(scene, rays.iter().copied(), &hits);
-    for (number, (&i, media)) in met.iter().zip(&media).enumerate() {
-        match boundaries.boundary(scene, number, (&rays[number], &hits[number]), media) {
-            None => found[i] = media.ior_around(scene, &hits[number]),
-            Some((Boundary::Between { outside, .. }, _)) => found[i] = outside,
-            Some((Boundary::None(_), _)) => {}
-        }
-    }
-    found
-}
-
 /// Return the hits where a ray crosses a boundary, without tangential ones, which are reported twice.
 pub(super) fn crossed(hits: &[Hit]) -> impl DoubleEndedIterator<Item = &Hit> {
     let is_twice = move |i: usize| {
@@ -218,7 +193,7 @@ pub(super) enum Boundary<F = Interior> {
 
 /// What may be around a hit: surfaces that coincide, or differ by less than rounding, are one boundary.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Around {
+pub(super) enum Vicinity {
     /// The hit surface is open.
     Open,
     /// Nothing else. The ray goes on from this `t`.
@@ -227,7 +202,7 @@ pub(super) enum Around {
     Window(Ray),
 }
 
-impl Around {
+impl Vicinity {
     /// Return the `t` from which a ray goes on behind its hit.
     pub fn beyond(&self, hit: &Hit) -> f64 {
         match self {
@@ -239,17 +214,17 @@ impl Around {
 }
 
 /// Return what may be around a hit.
-pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Around {
+pub(super) fn around<F: Filling>(scene: &Scene, ray: &Ray, hit: &Hit) -> Vicinity {
     if F::of(scene, hit).is_none() {
-        return Around::Open;
+        return Vicinity::Open;
     }
     let surface = scene.geometry().surface(ray, hit);
     let reach = RayOrigin::reach(&surface, ray);
     let t_max = (hit.t + reach).next_up();
     if scene.plan().lone_shapes().has(ray, hit, &surface, reach) {
-        return Around::Nothing(t_max.next_up());
+        return Vicinity::Nothing(t_max.next_up());
     }
-    Around::Window(Ray { t_min: ray.t_min.max(hit.t - reach), t_max, ..*ray })
+    Vicinity::Window(Ray { t_min: ray.t_min.max(hit.t - reach), t_max, ..*ray })
 }
 
 impl<F: Filling> Boundary<F> {

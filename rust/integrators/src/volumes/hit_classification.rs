@@ -2,7 +2,7 @@
 
 use super::current_medium::Filled;
 use super::ray_tracer::{ImmediateQueries, TraceRays, at_once};
-use crate::nesting::{Around, Boundary, Filling, MediumStack, around};
+use crate::nesting::{Boundary, Filling, MediumStack, Vicinity, around};
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Scene, SurfaceInteraction};
 
@@ -34,12 +34,12 @@ pub(super) async fn come_to(
     let around = around::<Filled>(scene, ray, hit);
     let at = (hit, around.beyond(hit));
     match around {
-        Around::Open => {
+        Vicinity::Open => {
             let outside = media.ior_around(scene, hit);
             ClassifiedHit::Surface { hit: *hit, outside, through: *media, beyond: at.1 }
         }
-        Around::Nothing(_) => meet_at(scene, ray, at, media, std::slice::from_ref(hit)),
-        Around::Window(window) => asks.crossed(&window, |crossed| meet_at(scene, ray, at, media, crossed)).await,
+        Vicinity::Nothing(_) => meet_at(scene, ray, at, media, std::slice::from_ref(hit)),
+        Vicinity::Window(window) => asks.crossed(&window, |crossed| meet_at(scene, ray, at, media, crossed)).await,
     }
 }
 

@@ -9,6 +9,7 @@ mod direct_light;
 mod emission;
 mod groups;
 mod guided;
+mod mask_stages;
 mod masks;
 mod matte;
 mod matte_stages;
