@@ -262,10 +262,10 @@ def test_a_render_that_was_stopped_goes_on_from_its_checkpoint(tmp_path):
     stop = threading.Event()
     how = {"seed": 5, "checkpoint": tmp_path / "box.checkpoint"}
     watch = Watch(lambda image: stop.set() if image.samples >= 4 else None)
-    part = rw.render(scene, camera, samples=100, progress=watch, stop=stop, **how)
-    assert part.samples < 100
-    whole = rw.render(scene, camera, samples=100, progress=False, **how)
-    again = rw.render(scene, camera, samples=100, progress=False, seed=5)
+    part = rw.render(scene, camera, samples=500, progress=watch, stop=stop, **how)
+    assert part.samples < 500
+    whole = rw.render(scene, camera, samples=500, progress=False, **how)
+    again = rw.render(scene, camera, samples=500, progress=False, seed=5)
     assert np.array_equal(whole.rgb, again.rgb)
     assert np.array_equal(whole.standard_error, again.standard_error)
 
