@@ -82,8 +82,8 @@ impl LoneShapes {
         self.gaps.get(shape as usize).is_some_and(|gap| gap.is_empty && gap.length > 0.0)
     }
 
-    /// Returns whether a ray certainly crosses no other surface within its reach ([`RayOrigin::reach`], in lengths of
-    /// its direction) of a hit.
+    /// Returns whether a ray certainly crosses no other surface within its reach of a hit, in lengths of its direction
+    /// ([`super::RayOrigin::reach`]).
     #[inline]
     pub fn has(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, reach: f64) -> bool {
         let Some(gap) = self.gaps.get(surface.shape as usize) else { return false };
