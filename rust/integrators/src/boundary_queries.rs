@@ -39,13 +39,19 @@ impl BoundaryQueries {
         (ray, hit): (&Ray, &Hit),
         media: &MediumStack<F>,
     ) -> Option<(Boundary<F>, f64)> {
+        let (crossed, beyond) = self.crossed(i, hit)?;
+        Some((Boundary::new(scene, ray, media, crossed), beyond))
+    }
+
+    /// Return all hits around the hit of ray number `i`, and the `t` from which it goes on; `None` for an open surface.
+    pub fn crossed<'h>(&'h self, i: usize, hit: &'h Hit) -> Option<(&'h [Hit], f64)> {
         let (around, window) = &self.around[i];
         let hits = match around {
             Vicinity::Open => return None,
             Vicinity::Nothing(_) => std::slice::from_ref(hit),
             Vicinity::Window(_) => self.crossings.of_ray(*window),
         };
-        Some((Boundary::new(scene, ray, media, hits), around.beyond(hit)))
+        Some((hits, around.beyond(hit)))
     }
 }
 

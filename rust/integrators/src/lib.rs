@@ -13,6 +13,8 @@ mod distributed;
 mod guiding;
 mod light_paths;
 mod light_traced;
+mod media;
+mod mis_weight;
 mod nesting;
 mod path;
 mod path_sharing;

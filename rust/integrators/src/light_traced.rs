@@ -3,6 +3,7 @@
 use super::light_paths::{LightPaths, Limits};
 use super::transport::Settings;
 use super::volumes::{Counting, MediaLightPaths, VolumetricPath};
+use super::wavefront::Wavefront;
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};
@@ -30,7 +31,11 @@ impl Default for LightTraced {
 impl Integrator for LightTraced {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let seen = if job.scene.plan().needs().media {
-            VolumetricPath::dimmed(0).begin(job)
+            if Wavefront::takes(&job) {
+                Box::new(Wavefront::dimmed(job, 0))
+            } else {
+                VolumetricPath::dimmed(0).begin(job)
+            }
         } else {
             Settings::path(Some(0), u32::MAX).begin(job, cancel)
         };

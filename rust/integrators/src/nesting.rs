@@ -52,7 +52,6 @@ pub(super) struct MediumStack<F = Interior> {
     interiors: [F; MOST],
 }
 
-/// Maximum number of interiors at a point. Beyond, those of lowest priority are forgotten.
 const MOST: usize = 4;
 
 impl<F: Filling> Default for MediumStack<F> {
@@ -62,12 +61,20 @@ impl<F: Filling> Default for MediumStack<F> {
 }
 
 impl<F: Filling> MediumStack<F> {
+    /// Maximum number of interiors at a point. Beyond, those of lowest priority are forgotten.
+    pub const MOST: usize = MOST;
+
     /// No interior.
     pub const NONE: Self = Self { count: 0, interiors: [F::NONE; MOST] };
 
     /// Return the number of interiors.
     pub(super) fn depth(&self) -> u32 {
         self.count
+    }
+
+    /// Return the interiors, in no order.
+    pub(super) fn interiors(&self) -> &[F] {
+        &self.interiors[..self.count as usize]
     }
 
     /// Return the interior that exists there; `None` outside all.

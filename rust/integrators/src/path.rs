@@ -2,6 +2,7 @@
 
 use super::transport::{Settings, can_share};
 use super::volumes::{self, VolumetricPath};
+use super::wavefront::Wavefront;
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_scene::Scene;
@@ -54,9 +55,8 @@ impl Path {
 
 impl Integrator for Path {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        if job.scene.plan().needs().media {
-            let shares = self.patch(job.scene) > 1;
-            return VolumetricPath { shares, ..VolumetricPath::path(self.max_depth, self.roulette_depth) }.begin(job);
+        if job.scene.plan().needs().media && !Wavefront::takes(&job) {
+            return VolumetricPath::path(self.max_depth, self.roulette_depth).begin(job);
         }
         self.settings(job.scene).begin(job, cancel)
     }

@@ -43,13 +43,13 @@ pub use geometry::{
     Surface, Vertices, check_transforms, rounded,
 };
 pub use interaction::Interaction;
-pub use lights::LightBlock;
 pub use lights::SeenTriangle;
 pub use lights::{
     Aim, ConstantEnvironment, DirectionalLight, EmissionDensity, EmissionNumbers, EmissionPdf, EmissionSample,
     Emitters, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext,
     Lights, Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };
+pub use lights::{LightBlock, ReceiverBlock};
 pub use lone_shapes::LoneShapes;
 pub use lookup_context::LookupContext;
 pub use materials::{DiffuseMaterial, Material};

@@ -3,7 +3,7 @@
 //! Surfaces that coincide are one boundary of media, so every hit of one asks for the others around it. Around most
 //! media and most glass there is nothing, which their boxes and planes tell once for all rays.
 
-use super::{Geometry, SurfacePoint};
+use super::{Geometry, RayOrigin, SurfaceBlock, SurfacePoint};
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, Ray};
 
@@ -86,16 +86,24 @@ impl LoneShapes {
     /// ([`super::RayOrigin::reach`]).
     #[inline]
     pub fn has(&self, ray: &Ray, hit: &Hit, surface: &SurfacePoint, reach: f64) -> bool {
-        let Some(gap) = self.gaps.get(surface.shape as usize) else { return false };
         let length = ray.direction.length();
-        if gap.length <= 4.0 * reach * length {
-            return false;
-        }
-        if gap.has_edges {
-            let [v, w] = hit.uv;
-            return v > OFF_EDGES && w > OFF_EDGES && 1.0 - v - w > OFF_EDGES;
-        }
-        ray.direction.dot(surface.normal).abs() > STEEP * length
+        let cosine = ray.direction.dot(surface.normal).abs() / length;
+        self.is_alone(surface.shape, reach * length, hit.uv, cosine)
+    }
+
+    /// The same of a lane of surfaces that rays have met.
+    #[inline]
+    pub fn has_lane(&self, surfaces: &SurfaceBlock, lane: usize) -> bool {
+        let cosine = f64::from(surfaces.cosine[lane]);
+        let offset = (surfaces.origin.get(lane) - surfaces.position.get(lane)).length();
+        let reach = offset / cosine.max(RayOrigin::GRAZING);
+        self.is_alone(surfaces.shape[lane], reach, surfaces.uv.map(|uv| uv[lane]), cosine)
+    }
+
+    fn is_alone(&self, shape: u32, reach: f64, [v, w]: [f64; 2], cosine: f64) -> bool {
+        let Some(gap) = self.gaps.get(shape as usize) else { return false };
+        let is_off_edges = || v > OFF_EDGES && w > OFF_EDGES && 1.0 - v - w > OFF_EDGES;
+        gap.length > 4.0 * reach && if gap.has_edges { is_off_edges() } else { cosine > STEEP }
     }
 }
 

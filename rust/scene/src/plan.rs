@@ -306,14 +306,9 @@ impl Plan {
         if front == back { front.into() } else { Self::MIXED }
     }
 
-    /// Name of the loop that traces paths: "media" if the scene has any, "wavefront" if all paths take the same stages,
-    /// otherwise "general".
+    /// Name of the loop that traces paths: "wavefront" if all paths take the same stages, otherwise "general".
     pub fn kernel(&self) -> &'static str {
-        match &self.needs {
-            SceneNeeds { media: true, .. } => "media",
-            SceneNeeds { nested: false, waves: false, .. } if !self.as_given => "wavefront",
-            _ => "general",
-        }
+        if self.as_given { "general" } else { "wavefront" }
     }
 
     /// The plan as a table.

@@ -24,6 +24,9 @@ impl RayOrigin {
     /// ample ([`raywright_shapes::triangle::EdgeRay`]).
     const SAFETY: f64 = 8.0;
 
+    /// The least cosine that counts for [`RayOrigin::reach`].
+    pub(super) const GRAZING: f64 = 1e-3;
+
     /// Where a segment ends, as a share of its way. What is left to the surface that it goes to is more than the error
     /// of that surface's test in f64, whose bounds are within 2⁻⁴⁶ of the way except where it is grazed. So most shapes
     /// can tell without longer numbers that they do not shadow themselves.
@@ -58,7 +61,7 @@ impl RayOrigin {
     #[inline]
     pub fn reach(surface: &SurfacePoint, ray: &Ray) -> f64 {
         // The offset along the normal, projected onto the ray; bounded for grazing rays.
-        let slope = ray.direction.dot(surface.normal).abs().max(1e-3 * ray.direction.length());
+        let slope = ray.direction.dot(surface.normal).abs().max(Self::GRAZING * ray.direction.length());
         Self::SAFETY * surface.error / slope
     }
 

@@ -140,8 +140,7 @@ fn test<const FUSED: bool, const OUTLINE: usize, const FLAT: bool, const ANY: bo
         };
         // How far the point lies off the patch, or the patch behind the ray.
         let off = greater(outside, -t);
-        // Only shadow rays end on a triangle.
-        let is_known = mask(index == rays.misses[0][i]) | if ANY { mask(index == rays.misses[1][i]) } else { 0 };
+        let is_known = mask(index == rays.misses[0][i]) | mask(index == rays.misses[1][i]);
         accept::<ANY>(index, i, (t, error, off), is_known, best);
     }
 }

@@ -53,7 +53,7 @@ impl Sphere {
             off[i] = choose(misses, f32::MAX, greater(choose(meets, f32::MIN, 0.0), -t[i]));
         }
         for i in 0..LANES {
-            let is_known = if ANY { mask(index == rays.misses[1][i]) } else { 0 };
+            let is_known = mask(index == rays.misses[1][i]);
             accept::<ANY>(index, i, (t[i], error[i], off[i]), is_known, best);
         }
     }

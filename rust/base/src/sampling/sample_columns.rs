@@ -74,12 +74,13 @@ impl SamplerColumns {
 
     /// Takes some of others of the same picture in place of those before.
     pub fn take_from(&mut self, others: &Self, some: Range<usize>) {
-        for (to, from) in [(&mut self.pixel, &others.pixel), (&mut self.sample, &others.sample)] {
+        let columns =
+            [(&mut self.pixel, &others.pixel), (&mut self.sample, &others.sample), (&mut self.number, &others.number)];
+        for (to, from) in columns {
             to.clear();
             to.extend_from_slice(&from[some.clone()]);
         }
         self.words.clear();
-        self.number.clear();
         if !others.words.is_empty() {
             self.words.extend_from_slice(&others.words[some.clone()]);
         }

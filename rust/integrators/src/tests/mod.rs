@@ -1,5 +1,6 @@
 //! Integrators against closed forms.
 
+mod flights;
 mod glossy;
 mod kinds;
 mod masks;

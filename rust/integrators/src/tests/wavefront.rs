@@ -45,13 +45,13 @@ fn assert_same(scene: &Scene, from: DVec3) {
 }
 
 #[track_caller]
-fn assert_equal_samples(stages: &dyn Session, in_f64: &dyn Session, from: DVec3) {
+pub(super) fn assert_equal_samples(stages: &dyn Session, in_f64: &dyn Session, from: DVec3) {
     let count = 20_000;
     let (stages, wanted) = (found(stages, from, count), found(in_f64, from, count));
     let largest = wanted.iter().map(|value| value.max()).fold(0.0, f64::max);
     assert!(largest > 0.0);
     let differ = stages.iter().zip(&wanted).filter(|&(&got, &wanted)| {
-        (0..3).any(|channel| (got[channel] - wanted[channel]).abs() > 1e-3 * (wanted[channel] + 0.01 * largest))
+        (0..3).any(|channel| (got[channel] - wanted[channel]).abs() > 1e-3 * (wanted[channel].abs() + 0.01 * largest))
     });
     let differ = differ.count();
     assert!(differ <= count as usize / 200, "{differ} of {count} differ");

@@ -2,8 +2,8 @@
 
 use super::block::Block;
 use super::guided::density;
-use super::weights::power_heuristic;
 use super::worker::TransportWorker;
+use crate::mis_weight::power_heuristic;
 use crate::resampling::{ResampledLanes, resample};
 use raywright_base::math::{DVec3, LANES, VectorLanes};
 use raywright_base::simd::loops;

@@ -1,8 +1,8 @@
 //! Light that paths run into.
 
 use super::path_state::PathState;
-use super::weights::power_heuristic;
 use super::worker::TransportWorker;
+use crate::mis_weight::power_heuristic;
 use raywright_base::math::{Hit, Ray};
 use raywright_optics::Rgb;
 use raywright_scene::{LightSampleContext, LookupContext, SurfacePoint};

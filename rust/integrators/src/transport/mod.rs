@@ -18,7 +18,6 @@ mod path_state;
 mod shade;
 mod splitting;
 mod waves;
-mod weights;
 mod widths;
 mod worker;
 
@@ -31,7 +30,6 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::Scene;
 use std::sync::Arc;
-pub(super) use weights::power_heuristic;
 use worker::TransportWorker;
 
 /// Along which of the directions that surfaces scatter into paths are followed. What is not followed is left to the

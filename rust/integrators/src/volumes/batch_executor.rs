@@ -1,6 +1,6 @@
 //! Batch execution of paths: the pending ray queries of all are traced together.
 
-use super::ray_tracer::TraceRays;
+use crate::media::ray_tracer::TraceRays;
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::Scene;
 use std::cell::{Cell, RefCell};

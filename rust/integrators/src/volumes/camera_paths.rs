@@ -1,27 +1,27 @@
 //! Volumetric camera paths.
 
 use super::batch_executor::{Lane, lanes, together};
-use super::current_medium::Filled;
 use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
-use super::path_numbers::{PathNumbers, depth};
-use super::path_reuse::{FirstVertex, Reuse, SecondVertex, SharedVertices};
 use super::path_state::PathState;
 use super::precomputed_light::KnownLight;
-use super::ray_tracer::TraceRays;
 use super::scattering::Scattering;
 use super::{Onwards, VolumetricPath};
 use crate::dimensions::Dimensions;
+use crate::media::current_medium::Filled;
+use crate::media::equiangular::{PointLights, ScatteringSpan};
+use crate::media::path_numbers::{PathNumbers, depth};
+use crate::media::ray_tracer::TraceRays;
+use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
 use crate::terminate_wavelengths::Parting;
-use crate::transport::power_heuristic;
 use crate::widths::widened;
 use crate::{CameraSample, Worker, roulette};
-use raywright_base::math::{DVec3, Hit, Ray};
+use raywright_base::math::{Hit, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
 use raywright_scene::{
-    Footprint, Interaction, Light, LightSample, LightSampleContext, LookupContext, Scene, SurfaceInteraction,
+    Footprint, Interaction, LightSample, LightSampleContext, LookupContext, Scene, SurfaceInteraction,
 };
 use std::cell::{Cell, RefCell};
 
@@ -36,7 +36,7 @@ pub(super) struct Walker<'a, A> {
     /// Footprint of camera rays, if materials need it.
     footprint: Option<Footprint>,
     /// Point lights.
-    pub(super) points: &'a [(DVec3, &'a dyn Light)],
+    pub(super) points: &'a PointLights<'a>,
     /// Precomputed light at scattering events, if any.
     pub(super) known: Option<&'a dyn KnownLight>,
     /// Ray intersection.
@@ -46,28 +46,18 @@ pub(super) struct Walker<'a, A> {
 /// Per-thread state.
 pub(super) struct Walkers<'a> {
     walker: Walker<'a, ()>,
-    reuse: Reuse,
-    /// Shared vertices of each path, if any.
-    parts: Vec<SharedVertices>,
-}
-
-/// The span of a ray in a homogeneous medium where it was scattered, and the density of the sampled distance.
-struct ScatteringSpan {
-    span: [f64; 2],
-    t: f64,
-    density: f64,
 }
 
 impl<'a> Walkers<'a> {
     pub fn new(
         settings: VolumetricPath,
         (scene, footprint): (&'a Scene, Footprint),
-        points: &'a [(DVec3, &'a dyn Light)],
+        points: &'a PointLights<'a>,
         known: Option<&'a dyn KnownLight>,
     ) -> Self {
         let footprint = scene.plan().needs().points.width.then_some(footprint);
         let walker = Walker { settings, scene, footprint, points, known, asks: () };
-        Self { walker, reuse: Reuse::default(), parts: Vec::new() }
+        Self { walker }
     }
 }
 
@@ -77,14 +67,12 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         self.settings.onwards == Onwards::All
     }
 
-    /// Return the radiance along a camera ray. `waiting` is storage for split paths. `parts` receives shared
-    /// contributions, which the result excludes.
+    /// Return the radiance along a camera ray. `waiting` is storage for split paths.
     async fn follow(
         &self,
         sample: &mut CameraSample,
         media: MediumStack<Filled>,
         waiting: &mut Vec<PathState>,
-        parts: &mut SharedVertices,
         cancel: &Cancel,
     ) -> Rgb {
         let mut light = Rgb::ZERO;
@@ -98,7 +86,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         // The first wavelength is the hero, unless other paths share the wavelengths: dispersion terminates all but the
         // first. The wavelength that samples distances must be independent of that. For RGB it is any of the three.
         let hero = match (waves, self.known) {
-            (Some(_), Some(_)) => numbers.hero(),
+            (Some(_), Some(_)) => numbers.more.hero(),
             (Some(_), None) => 0,
             (None, _) => ((u * 3.0) as usize).min(2),
         };
@@ -109,51 +97,27 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         while let Some(mut path) = waiting.pop() {
             while !cancel.is_raised() {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
-                let was_first = std::mem::take(&mut path.is_first);
-                let light = match &mut parts.second {
-                    Some(second) if path.is_shared => &mut second.found,
-                    _ => &mut light,
-                };
-                let place = self.advance(&mut path, hero, &mut numbers, cancel, light).await;
+                let place = self.advance(&mut path, hero, &mut numbers, cancel, &mut light).await;
                 let Some(place) = place else { break };
                 let goes_on = match place {
                     TraversalEnd::Medium { here, .. } if self.known.is_some() => {
-                        *light += self.known_among(&path, &here, number);
+                        light += self.known_among(&path, &here, number);
                         false
-                    }
-                    // Only the medium lies between.
-                    TraversalEnd::Medium { here, collision, .. } if was_first && path.passed == 0 => {
-                        path.come_to(collision.t, 0.0);
-                        let met = self.scatter_shared(&mut path, &here, hero, &mut numbers, cancel).await;
-                        let Some((second, goes_on)) = met else { break };
-                        parts.second = Some(second);
-                        goes_on
                     }
                     TraversalEnd::Medium { here, collision, span } => {
                         path.come_to(collision.t, 0.0);
-                        let takes = self.settings.shares
-                            && parts.first.is_none()
-                            && !path.has_gamut_excess
-                            && FirstVertex::may_be(&here);
-                        if takes && collision.density.is_some() {
-                            let is_limited = self.settings.max_depth.is_some();
-                            parts.first = Some(FirstVertex::new(&here, collision.here, &path, is_limited));
-                            path.is_first = true;
-                        }
-                        let part = collision.density.map(|density| ScatteringSpan { span, t: collision.t, density });
+                        let part = collision.density.map(|density| ScatteringSpan {
+                            ray: path.ray,
+                            span,
+                            t: collision.t,
+                            density,
+                        });
                         let part = part.filter(|_| self.is_lit(&path));
-                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, light).await
+                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light).await
                     }
                     TraversalEnd::Surface { hit, outside, through } => {
                         let (at, of) = ((hit, outside, through), (hero, number));
-                        let first = parts.first.filter(|first| was_first && self.is_within_reach(first, &path));
-                        let mut second = None;
-                        let to = (first.is_some().then_some(&mut second), light);
-                        let goes_on = self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, to).await;
-                        if second.is_some() {
-                            parts.second = second;
-                        }
-                        goes_on
+                        self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, &mut light).await
                     }
                     TraversalEnd::Outside => false,
                 };
@@ -182,12 +146,12 @@ impl<'a, A: TraceRays> Walker<'a, A> {
     ) -> Option<TraversalEnd> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
-        let mut going = RaySegmentState { ray: path.ray, weights: path.weights, media: path.media, passed: 0 };
+        let mut going = RaySegmentState { ray: path.ray, weights: path.weights, media: path.media };
         let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
         let course = self.course(path.waves);
         let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
         drop(lit);
-        (path.ray, path.weights, path.media, path.passed) = (going.ray, going.weights, going.media, going.passed);
+        (path.ray, path.weights, path.media) = (going.ray, going.weights, going.media);
         if let Some(TraversalEnd::Outside) = place {
             *light += path.weights.throughput() * self.light_from_outside(path);
             return None;
@@ -247,9 +211,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         if let Some((drawn, arrives)) = asked {
             let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
             let weight = match (part, place) {
-                (Some(ScatteringSpan { span, t, density }), Some(place)) => {
-                    self.beside_the_way(&path.ray, span, t, density, place)
-                }
+                (Some(part), Some(place)) => self.points.weight(&part, place),
                 _ => 1.0,
             };
             *light += arrives * weight;
@@ -260,7 +222,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
     }
 
-    /// Scatter a path at a surface and return whether it continues. Contributions that may be shared are kept separate.
+    /// Scatter a path at a surface and return whether it continues.
     #[allow(clippy::too_many_arguments)]
     async fn reflect(
         &self,
@@ -270,16 +232,14 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         waiting: &mut Vec<PathState>,
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
-        (shared, mut light): (Option<&mut Option<SecondVertex>>, &mut Rgb),
+        light: &mut Rgb,
     ) -> bool {
         let ray = path.ray;
         let (scene, geometry) = (self.scene, self.scene.geometry());
         path.leaves = hit.primitive;
         let surface = geometry.surface(&ray, &hit);
         let emission = scene.emission_at(&surface);
-        // Shared contributions are also used by paths of other widths.
-        let is_wide = self.footprint.is_some() && shared.is_none() && !path.is_shared;
-        let width = if is_wide { path.footprint.at(hit.t).width } else { 0.0 };
+        let width = if self.footprint.is_some() { path.footprint.at(hit.t).width } else { 0.0 };
         let gaze = LookupContext { width, waves: path.waves };
         if !emission.is_dark() && !self.is_shining_known(path) {
             let sent = emission.sent(geometry, &ray, &hit, &surface, || gaze);
@@ -299,12 +259,6 @@ impl<'a, A: TraceRays> Walker<'a, A> {
             path.end_all_but_hero();
         }
         path.meet(here.bsdf().repeat_correction());
-        if let Some(shared) = shared
-            && let Some(second) = SecondVertex::of_surface(&here, path, hit.t)
-        {
-            path.share();
-            light = &mut shared.insert(second).found;
-        }
         if !self.settings.ambient.is_black() {
             let share = here.ambient(scene, &ray, &hit, gaze, outside);
             *light += path.weights.throughput() * share * self.settings.ambient;
@@ -432,8 +386,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         if throughput.max() * path.scale < self.settings.least {
             return false;
         }
-        // Roulette must not affect the path up to its shared vertex: only the sampling densities do.
-        if path.is_first || path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
+        if path.bounce < self.settings.roulette_depth.min(roulette::AT_LATEST) {
             return !throughput.is_black();
         }
         let survival = if may_never_end {
@@ -459,22 +412,15 @@ impl Walkers<'_> {
         MediumStack::at(scene, &rays, &mut media);
         let lanes = lanes(samples.len());
         let radiance = Cell::from_mut(radiance).as_slice_of_cells();
-        self.parts.clear();
-        self.parts.resize(if settings.shares { samples.len() } else { 0 }, SharedVertices::default());
-        let left = Cell::from_mut(&mut self.parts[..]).as_slice_of_cells();
-        let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance).enumerate());
+        let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance));
         together(scene, &lanes, |lane: &Lane| {
             let (walker, to_do) = (Walker { settings, scene, footprint, points, known, asks: lane }, &to_do);
             async move {
                 let mut waiting = Vec::new();
                 while !cancel.is_raised() {
                     let next = to_do.borrow_mut().next();
-                    let Some((number, ((sample, media), radiance))) = next else { return };
-                    let mut parts = SharedVertices::default();
-                    radiance.set(walker.follow(sample, media, &mut waiting, &mut parts, cancel).await);
-                    if let Some(left) = left.get(number) {
-                        left.set(parts);
-                    }
+                    let Some(((sample, media), radiance)) = next else { return };
+                    radiance.set(walker.follow(sample, media, &mut waiting, cancel).await);
                 }
             }
         });
@@ -483,22 +429,6 @@ impl Walkers<'_> {
 
 impl Worker for Walkers<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
-        if self.walker.settings.shares {
-            return self.radiance_in_groups(samples, &vec![1; samples.len()], cancel, radiance);
-        }
         self.follow(samples, cancel, radiance);
-    }
-
-    fn radiance_in_groups(
-        &mut self,
-        samples: &mut [CameraSample],
-        groups: &[u32],
-        cancel: &Cancel,
-        radiance: &mut [Rgb],
-    ) {
-        self.follow(samples, cancel, radiance);
-        if self.walker.settings.shares {
-            self.reuse.share(self.walker.scene, groups, &self.parts, cancel, radiance);
-        }
     }
 }

@@ -1,14 +1,15 @@
 //! Light sampling at scattering events.
 
 use super::camera_paths::Walker;
-use super::current_medium::Filled;
 use super::medium_traversal::MediumTraversal;
-use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
-use super::ray_tracer::TraceRays;
-use super::spectral_mis::Weights;
+use crate::media::current_medium::Filled;
+use crate::media::path_numbers::PathNumbers;
+use crate::media::ray_tracer::TraceRays;
+use crate::media::spectral_mis::Weights;
+use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
-use crate::transport::{power_heuristic, share};
+use crate::transport::share;
 use raywright_base::math::Ray;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;

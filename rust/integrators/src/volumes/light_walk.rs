@@ -1,12 +1,12 @@
 //! Tracing of light paths through media, one path at a time.
 
-use super::current_medium::Filled;
 use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
-use super::path_numbers::{PathNumbers, depth};
-use super::ray_tracer::at_once;
-use super::spectral_mis::Weights;
 use super::vertex::{Point, Vertex};
 use crate::light_paths::{Arrived, Dimensions, EmissionDimensions, Limits, Onward, Times};
+use crate::media::current_medium::Filled;
+use crate::media::path_numbers::{PathNumbers, depth};
+use crate::media::ray_tracer::at_once;
+use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::terminate_wavelengths::Parting;
 use crate::{is_matt, roulette};
@@ -141,7 +141,7 @@ impl<'a> MediaLightWalk<'a> {
             let sampler = &mut paths[number as usize];
             let hero = ((sampler.one(EmissionDimensions::HERO) * 3.0) as usize).min(2);
             let weights = Weights { carried: light.weight, ..Weights::START };
-            let going = RaySegmentState { ray, weights, media, passed: 0 };
+            let going = RaySegmentState { ray, weights, media };
             let again = Rgb::ONE;
             let (bounce, is_sharp, is_adrift, held, single) = (0, false, false, 0, false);
             let waves = self.waves.get(number as usize).copied();
@@ -164,7 +164,7 @@ impl<'a> MediaLightWalk<'a> {
         let mut numbers = PathNumbers::apart(sampler);
         if path.waves.is_some() {
             // This choice must be independent of the wavelengths' own: dispersion keeps the first.
-            path.hero = numbers.hero();
+            path.hero = numbers.more.hero();
         }
         visitor.set_out(&path, light);
         if light.is_infinite && self.scene.surrounding().is_some() {

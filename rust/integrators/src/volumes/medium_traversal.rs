@@ -1,12 +1,12 @@
 //! Medium traversal between scattering events.
 
-use super::current_medium::{self, Filled};
-use super::distance_sampling::{Collision, MediumSegment};
-use super::hit_classification::{ClassifiedHit, come_to, straight};
-use super::path_numbers::PathNumbers;
-use super::ray_tracer::{ImmediateQueries, TraceRays};
 use super::scattering::Scattering;
-use super::spectral_mis::Weights;
+use crate::media::current_medium::{self, Filled};
+use crate::media::distance_sampling::{Collision, MediumSegment};
+use crate::media::hit_classification::{ClassifiedHit, come_to, straight};
+use crate::media::path_numbers::PathNumbers;
+use crate::media::ray_tracer::{ImmediateQueries, TraceRays};
+use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::shadows::opacity;
 use raywright_base::math::{Hit, Ray};
@@ -37,8 +37,6 @@ pub(crate) struct RaySegmentState {
     pub ray: Ray,
     pub weights: Weights,
     pub media: MediumStack<Filled>,
-    /// Number of medium boundaries passed on this segment. A partial passage counts as several.
-    pub passed: u32,
 }
 
 /// The end of a traversal.
@@ -117,7 +115,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
                 }
                 let flight = MediumSegment { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
                 let weights = &mut path.weights;
-                if let Some(collision) = flight.fly(weights, (hero, &mut way), numbers, cancel, light) {
+                if let Some(collision) = flight.fly(weights, (hero, &mut way), &mut numbers.more, cancel, light) {
                     let (position, before) = (path.ray.at(collision.t), path.ray.direction);
                     let here = Scattering { position, before, phase: medium.phase() };
                     return Some(TraversalEnd::Medium { here, collision, span });
@@ -132,21 +130,20 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
             start = hit.t;
             match come_to((self.scene, self.asks), &path.ray, &hit, &path.media).await {
                 ClassifiedHit::Passed(beyond, media) => {
-                    (path.ray.t_min, path.media, path.passed) = (beyond, media, path.passed.saturating_add(1));
+                    (path.ray.t_min, path.media) = (beyond, media);
                     path.ray.misses[0] = hit.primitive;
                 }
                 ClassifiedHit::Surface { hit, outside, through, beyond } => {
                     let opacity = opacity(self.scene, &path.ray, &hit);
                     let straight = straight(self.scene, &path.ray, &hit, outside);
                     path.ray.misses[0] = hit.primitive;
-                    if opacity < 1.0 && numbers.next() >= opacity {
+                    if opacity < 1.0 && numbers.more.next() >= opacity {
                         path.ray.t_min = hit.t.next_up();
-                    } else if straight > 0.0 && numbers.next() < straight {
+                    } else if straight > 0.0 && numbers.more.next() < straight {
                         (path.ray.t_min, path.media) = (beyond, through);
                     } else {
                         return Some(TraversalEnd::Surface { hit, outside, through });
                     }
-                    path.passed = path.passed.saturating_add(2);
                 }
             }
         }
@@ -187,7 +184,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
                 let span = [start, end];
                 let Self { scatters, roulette, waves, .. } = *self;
                 let flight = MediumSegment { medium, ray: within, span, length, scatters, roulette, waves };
-                flight.fade(weights, hero, numbers, cancel);
+                flight.fade(weights, hero, &mut numbers.more, cancel);
             }
             weights.carried *= left;
             if weights.carried.is_black() {

@@ -7,49 +7,37 @@
 
 mod batch_executor;
 mod camera_paths;
-mod cubic_segments;
-mod current_medium;
 mod direct_light;
-mod distance_sampling;
 mod equiangular;
 mod final_gather;
-mod hit_classification;
 mod light_partials;
 mod light_walk;
 mod medium_traversal;
 mod optical_depth;
-mod path_numbers;
-mod path_reuse;
 mod path_state;
-mod point_pairs;
 mod precomputed_light;
-mod ray_tracer;
 mod scattering;
-mod shared_vertices;
-mod spectral_mis;
 mod to_camera;
-mod transmittance;
 mod vertex;
 mod volumetric_bdpt;
 
-pub(super) use current_medium::Filled;
-pub(super) use hit_classification::{ClassifiedHit, meet};
+pub(super) use crate::media::current_medium::Filled;
+pub(super) use crate::media::hit_classification::{ClassifiedHit, meet};
+pub(super) use crate::media::path_numbers::PathNumbers;
+pub(super) use crate::media::path_reuse::can_share;
 pub(super) use light_walk::{Drifting, MediaLightWalk, MediaVisitor};
 pub use optical_depth::optical_depths;
-pub(super) use path_numbers::PathNumbers;
-pub(super) use path_reuse::can_share;
 pub(super) use precomputed_light::KnownLight;
 pub(super) use scattering::Scattering;
 pub(super) use to_camera::{Counting, MediaLightPaths};
 pub(super) use vertex::{Point, Vertex};
 pub(super) use volumetric_bdpt::BothEnds;
 
+use super::media::equiangular::PointLights;
 use super::transport::Gather;
 use super::{Job, Session, Worker};
 use camera_paths::Walkers;
-use raywright_base::math::DVec3;
 use raywright_optics::Rgb;
-use raywright_scene::lights::{Light, Place as LightPlace};
 use raywright_scene::{Footprint, Scene};
 use std::sync::Arc;
 
@@ -83,8 +71,6 @@ pub(super) struct VolumetricPath {
     /// Use of precomputed light at matte surfaces and in media, which [`VolumetricPath::begin_with`] receives. `None`
     /// continues paths there.
     pub gather: Option<Gather>,
-    /// Paths of a group share their results, in scenes that allow it ([`can_share`]).
-    pub shares: bool,
 }
 
 impl VolumetricPath {
@@ -100,7 +86,6 @@ impl VolumetricPath {
             ambient: Rgb::ZERO,
             least: 0.0,
             gather: None,
-            shares: false,
         }
     }
 
@@ -120,11 +105,7 @@ impl VolumetricPath {
     }
 
     fn among<'a>(self, job: Job<'a>, known: Option<Arc<dyn KnownLight + 'a>>) -> Box<dyn Session + 'a> {
-        let point = |light: &'a dyn Light| match light.place() {
-            Some(LightPlace::Point(place)) => Some((place, light)),
-            _ => None,
-        };
-        let points = job.scene.lights().others().filter_map(point).collect();
+        let points = PointLights::of(job.scene);
         Box::new(Among { settings: self, scene: job.scene, footprint: job.footprint, points, known })
     }
 }
@@ -136,7 +117,7 @@ struct Among<'a> {
     /// Footprint of camera rays.
     footprint: Footprint,
     /// Point lights.
-    points: Vec<(DVec3, &'a dyn Light)>,
+    points: PointLights<'a>,
     /// Precomputed light at scattering events.
     known: Option<Arc<dyn KnownLight + 'a>>,
 }

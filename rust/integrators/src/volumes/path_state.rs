@@ -1,7 +1,7 @@
 //! State of volumetric camera paths.
 
-use super::current_medium::Filled;
-use super::spectral_mis::Weights;
+use crate::media::current_medium::Filled;
+use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::terminate_wavelengths::Parting;
 use raywright_base::math::{DVec3, Ray};
@@ -41,14 +41,9 @@ pub(super) struct PathState {
     /// True for a final gather ray; and true if a specular surface followed.
     pub is_gathered: bool,
     pub is_sharp_since: bool,
-    /// True at the path's first shared vertex; and true if its further contributions are shared ([`super::reuse`]).
-    pub is_first: bool,
-    pub is_shared: bool,
     /// Footprint at the ray's origin, if texture lookups use it; and the mean curvature of the surface there.
     pub footprint: Footprint,
     pub curvature: f64,
-    /// Number of medium boundaries on this ray ([`super::medium_traversal::RaySegmentState::passed`]).
-    pub passed: u32,
 }
 
 impl PathState {
@@ -71,11 +66,8 @@ impl PathState {
             splits: 1.0,
             is_gathered: false,
             is_sharp_since: false,
-            is_first: false,
-            is_shared: false,
             footprint: Footprint::default(),
             curvature: 0.0,
-            passed: 0,
         }
     }
 
@@ -122,13 +114,6 @@ impl PathState {
             }
             (self.waves, self.single) = (self.waves.map(|waves| waves.alone()), true);
         }
-    }
-
-    /// Reset the weights for shared contributions; roulette keeps the lost throughput.
-    pub fn share(&mut self) {
-        self.scale *= self.weights.throughput().max();
-        self.weights.carried = Rgb::splat(self.weights.drawn.mean());
-        self.is_shared = true;
     }
 
     /// Apply the correction of a surface with reflectance above 1, if the path has met such a surface before

@@ -1,7 +1,7 @@
 //! Precomputed light at vertices, as from photon maps.
 
-use super::current_medium::Filled;
 use super::scattering::Scattering;
+use crate::media::current_medium::Filled;
 use crate::nesting::MediumStack;
 use crate::transport::Visit;
 use raywright_optics::Rgb;

@@ -3,10 +3,10 @@
 use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
 use super::medium_traversal::MediumTraversal;
-use super::path_numbers::PathNumbers;
-use super::ray_tracer::at_once;
 use super::vertex::Vertex;
 use crate::light_paths::{Dimensions, EmissionDimensions, Limits, Onward, weight};
+use crate::media::path_numbers::PathNumbers;
+use crate::media::ray_tracer::at_once;
 use crate::{Job, LightWorker, Splat};
 use raywright_base::math::{DVec3, Ray};
 use raywright_base::sampling::Sampler;

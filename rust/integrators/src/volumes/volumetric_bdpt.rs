@@ -3,16 +3,16 @@
 //! It works as among surfaces alone ([`crate::Bidirectional`]), with points of media as additional vertices, whose MIS
 //! weights are in [`super::vertex`]. Emission of media is found by camera paths alone.
 
-use super::current_medium::Filled;
 use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
 use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
-use super::path_numbers::{PathNumbers, depth};
-use super::ray_tracer::at_once;
-use super::spectral_mis::Weights;
 use super::vertex::{Point, Vertex};
 use crate::dimensions::Dimensions;
 use crate::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
+use crate::media::current_medium::Filled;
+use crate::media::path_numbers::{PathNumbers, depth};
+use crate::media::ray_tracer::at_once;
+use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::terminate_wavelengths::Parting;
 use crate::widths::widened;
@@ -188,8 +188,8 @@ impl<'a> BothEnds<'a> {
         let time = if self.moves { sample.sampler.one(3) } else { 0.0 };
         let mut numbers = PathNumbers::apart(&mut sample.sampler);
         // This choice must be independent of the wavelengths' own: dispersion keeps the first.
-        let hero = if waves.is_some() { numbers.hero() } else { hero };
-        let going = RaySegmentState { ray: sample.ray, weights: Weights::START, media, passed: 0 };
+        let hero = if waves.is_some() { numbers.more.hero() } else { hero };
+        let going = RaySegmentState { ray: sample.ray, weights: Weights::START, media };
         let partial = Partial::of_camera(self.paths, 0.0);
         let (normal, single) = (DVec3::ZERO, false);
         let footprint = self.job.footprint;

@@ -3,7 +3,9 @@
 use super::guided::GuidedBlock;
 use super::queues::Flags;
 use super::shading_frames::ShadingFrames;
+use super::waves::WavesBlock;
 use crate::Guide;
+use crate::terminate_wavelengths::Parting;
 use crate::widths::widened;
 use raywright_base::math::single::mask;
 use raywright_base::math::{DVec3, Hit, LANES, PathRays, SingleLanes, Vec3, VectorLanes, select};
@@ -11,7 +13,7 @@ use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 use raywright_optics::{Bsdf, BsdfSample, BsdfSampleLanes, Null, Rgb, RgbLanes};
 use raywright_scene::materials::BsdfLanes;
-use raywright_scene::{Footprint, LightBlock, Scene, SurfaceBlock, SurfaceInteraction};
+use raywright_scene::{Footprint, LightBlock, LookupContext, Scene, SurfaceBlock, SurfaceInteraction};
 use std::borrow::Cow;
 
 /// How sixteen surfaces scatter.
@@ -19,6 +21,8 @@ pub(super) struct BsdfBlock<'a> {
     bsdf: BsdfLanes<'a>,
     drawn: BsdfSampleLanes,
     frames: ShadingFrames,
+    /// The densities with which surfaces scatter into the directions of [`BsdfBlock::reflect`].
+    pub pdf: [f64; LANES],
     /// Where light is asked for, and where each of few lights is.
     pub asks: [bool; LANES],
     pub asks_each: [bool; LANES],
@@ -105,6 +109,7 @@ impl<'a> BsdfBlock<'a> {
             bsdf: BsdfLanes::default(),
             drawn: BsdfSampleLanes::NONE,
             frames: ShadingFrames::new(are_flat),
+            pdf: [0.0; LANES],
             asks: [false; LANES],
             asks_each: [false; LANES],
             normal: SingleLanes::ZERO,
@@ -116,14 +121,16 @@ impl<'a> BsdfBlock<'a> {
         }
     }
 
-    /// Stage: materials are asked how surfaces scatter, where a ray is so wide. `chance` is for the roulette of paths
-    /// that were aimed.
+    /// Stage: materials are asked how surfaces scatter at the wavelengths of paths, in surroundings of these indices of
+    /// refraction. `chance` is for the roulette of paths that were aimed.
+    #[allow(clippy::too_many_arguments)]
     pub fn evaluate_materials(
         &mut self,
         level: Level,
         scene: &'a Scene,
         met: (&PathRays, &[Hit]),
         surfaces: &SurfaceBlock,
+        (outside, spectral): (&[f64; LANES], &mut WavesBlock),
         chance: &[f64; LANES],
         throughput: &mut SingleLanes,
     ) {
@@ -133,11 +140,22 @@ impl<'a> BsdfBlock<'a> {
         (self.asks, self.asks_each) = ([false; LANES], [false; LANES]);
         for lane in 0..surfaces.count {
             let (plan, width) = (scene.plan(), f64::from(self.width[lane]));
-            let bsdf = match plan.constant(surfaces.shape[lane], surfaces.is_front[lane] != 0) {
-                Some(bsdf) if width == 0.0 => Cow::Borrowed(bsdf),
+            let (waves, is_front) = (spectral.waves[lane], surfaces.is_front[lane] != 0);
+            let (outside, parting) = match &waves {
+                Some(waves) => {
+                    let material = match self.frames.surface(lane) {
+                        Some(surface) => scene.material_at(&surface),
+                        None => scene.material(surfaces.shape[lane]),
+                    };
+                    Parting::at(material, is_front, (outside[lane], spectral.around[lane]), waves)
+                }
+                None => (outside[lane], None),
+            };
+            let bsdf = match plan.constant(surfaces.shape[lane], is_front) {
+                Some(bsdf) if width == 0.0 && outside == 1.0 => Cow::Borrowed(bsdf),
                 _ => {
                     let made = self.frames.replace(lane, |ray, hit, surface| {
-                        SurfaceInteraction::new(scene, ray, hit, surface, width, 1.0)
+                        SurfaceInteraction::new(scene, ray, hit, surface, LookupContext { width, waves }, outside)
                     });
                     Cow::Owned(made.unwrap_or_else(|| Null.into()))
                 }
@@ -145,6 +163,8 @@ impl<'a> BsdfBlock<'a> {
             self.bsdf.push(bsdf);
             self.bsdf.prepare(self.frames.wo.get(lane));
             let bsdf = self.bsdf.get(lane);
+            spectral.parting[lane] = parting.filter(|parting| parting.waits(bsdf));
+            spectral.ends[lane] = parting.is_some() && spectral.parting[lane].is_none();
             self.asks[lane] = !bsdf.is_delta();
             self.asks_each[lane] = plan.asks_each(|| bsdf.roughness());
             let normal = if bsdf.transmits() { DVec3::ZERO } else { self.frames.normal(surfaces, lane).0 };
@@ -175,7 +195,7 @@ impl<'a> BsdfBlock<'a> {
     /// What arrives of light that was drawn, in some lanes, if nothing blocks it. `follows` is 1, or 0 if paths end
     /// there.
     pub fn reflect(
-        &self,
+        &mut self,
         level: Level,
         surfaces: &SurfaceBlock,
         lights: &LightBlock,
@@ -195,6 +215,7 @@ impl<'a> BsdfBlock<'a> {
             }
         }
         weigh(level, throughput, lights, &scattered, &pdf, &counts, &asks, follows, arriving);
+        self.pdf = pdf;
     }
 
     /// Stage: paths are scattered.
@@ -227,6 +248,21 @@ impl<'a> BsdfBlock<'a> {
         for (flags, &each) in next.flags.iter_mut().zip(&self.asks_each) {
             *flags = *flags & !Flags::ASKED_EACH | Flags::ASKED_EACH & mask(each);
         }
+    }
+
+    /// The direction back along the ray of a lane, in its shading frame.
+    pub fn wo(&self, lane: usize) -> DVec3 {
+        self.frames.wo.get(lane)
+    }
+
+    /// Whether the path of a lane has come to a surface that reflects more than arrives, in a channel.
+    pub fn has_gamut_excess(&self, lane: usize) -> bool {
+        self.flags[lane] & Flags::HAS_GAMUT_EXCESS != 0
+    }
+
+    /// Whether the path of a lane goes on behind its surface.
+    pub fn is_through(&self, lane: usize) -> bool {
+        self.drawn.is_through[lane]
     }
 
     /// The same where surfaces have guides: some paths aim, the others are scattered.

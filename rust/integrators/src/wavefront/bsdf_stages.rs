@@ -2,14 +2,14 @@
 
 use super::matte;
 use super::queues::PathLanes;
-use super::worker::{WavefrontWorker, bits};
+use super::worker::{WavefrontWorker, bits, own};
 use crate::dimensions::Dimensions;
 use crate::resampling::{ResampledLanes, resample};
 use raywright_base::math::{LANES, Ray, SingleLanes, VectorLanes};
 use raywright_base::sampling::SamplerLanes;
 use raywright_base::timing::{Part, timed};
 use raywright_optics::RgbLanes;
-use raywright_scene::LightBlock;
+use raywright_scene::{LightBlock, ReceiverBlock};
 
 impl WavefrontWorker<'_> {
     /// Takes sixteen paths from surfaces of any kind to their next rays.
@@ -22,11 +22,17 @@ impl WavefrontWorker<'_> {
                 }
             }
         }
+        if self.extra.media {
+            self.share_beyond_medium(samples, |worker, lane| {
+                let (_, normal, is_bent) = worker.block.bsdf.matte(&worker.block.surfaces, lane)?;
+                Some((normal, is_bent))
+            });
+        }
         if !self.scene.lights().is_dark() && self.block.bsdf.asks.contains(&true) {
             timed(Part::Light, || self.ask_for_light_of_any(numbers, bounce));
         }
         if self.follows {
-            timed(Part::Continuation, || self.scatter_from_any(numbers, bounce));
+            timed(Part::Continuation, || self.scatter_from_any(numbers, bounce, samples));
         }
     }
 
@@ -39,18 +45,23 @@ impl WavefrontWorker<'_> {
         }
         let met = (&self.paths[0].rays, &self.hits[..]);
         let throughput = &mut block.throughput;
-        block.bsdf.evaluate_materials(self.level, self.scene, met, &block.surfaces, &chance, throughput);
+        let around = (&block.media.outside, &mut block.spectral);
+        let surfaces = &block.surfaces;
+        block.bsdf.evaluate_materials(self.level, self.scene, met, surfaces, around, &chance, throughput);
         // The density with which a path comes to the second point that it shares must be known.
         if bounce == 0 && self.sharing.is_some() {
             block.bsdf.guided.do_not_aim();
         }
+        self.end_wavelengths();
     }
 
     /// Stage: light is drawn for sixteen surfaces of any kind, and its shadow rays are queued: of one light, or where
     /// surfaces are glossy and lights few, of each, and of these draws one stands for all.
     fn ask_for_light_of_any(&mut self, numbers: &SamplerLanes, bounce: u32) {
         let (level, block) = (self.level, &mut *self.block);
-        let follows = if self.follows { 1.0 } else { 0.0 };
+        let is_followed = if self.follows { 1.0 } else { 0.0 };
+        // Among media it is weighed when it arrives.
+        let follows = if self.extra.media { 0.0 } else { is_followed };
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
         let dimensions = Dimensions::of(bounce, 0);
@@ -58,33 +69,46 @@ impl WavefrontWorker<'_> {
         let asks = block.bsdf.asks;
         let asks_each: [bool; LANES] = std::array::from_fn(|lane| asks[lane] && block.bsdf.asks_each[lane]);
         let asks_one: [bool; LANES] = std::array::from_fn(|lane| asks[lane] && !asks_each[lane]);
-        let (surfaces, normal) = (&block.surfaces, &block.bsdf.normal);
+        let surfaces = &block.surfaces;
+        let normal = block.bsdf.normal;
+        let receivers = ReceiverBlock { surfaces, normal: &normal, waves: &block.spectral.waves };
         let mut arriving = RgbLanes::ZERO;
         if asks_one.contains(&true) {
-            lights.draw_block(level, geometry, surfaces, normal, &choice, &u, &mut block.lights);
+            lights.draw_block(level, geometry, &receivers, &choice, &u, &mut block.lights);
             block.bsdf.reflect(level, surfaces, &block.lights, &block.throughput, (&asks_one, follows), &mut arriving);
+            for lane in (0..LANES).filter(|&lane| asks_one[lane] && block.lights.pdf[lane] > 0.0) {
+                let ratio = is_followed * block.bsdf.pdf[lane] / f64::from(block.lights.pdf[lane]);
+                block.media.ratio[lane] = ratio as f32;
+            }
         }
         if asks_each.contains(&true) {
             let mut all = ResampledLanes::new(choice);
             self.each.resize(lights.few() as usize, LightBlock::NONE);
+            self.each_pdf.resize(self.each.len(), [0.0; LANES]);
             for (one, drawn) in (0u32..).zip(&mut self.each) {
                 let mut of_one = RgbLanes::ZERO;
                 numbers.choice_and_pair(level, dimensions.light_choice(one), &mut choice, &mut u);
-                lights.draw_one_block(one, level, geometry, (surfaces, normal), &choice, &u, drawn);
+                lights.draw_one_block(one, level, geometry, &receivers, &choice, &u, drawn);
                 block.bsdf.reflect(level, surfaces, drawn, &block.throughput, (&asks_each, follows), &mut of_one);
                 resample(level, &mut all, one.into(), &of_one);
+                self.each_pdf[one as usize] = block.bsdf.pdf;
             }
             for lane in 0..surfaces.count {
                 if let Some((one, brings)) = all.kept(lane) {
                     block.lights.copy(lane, &self.each[one]);
                     arriving.set(lane, brings);
+                    block.media.ratio[lane] =
+                        (is_followed * self.each_pdf[one][lane] / f64::from(self.each[one].pdf[lane])) as f32;
                 }
             }
         }
         let (mut origin, mut brings, mut lit) = (VectorLanes::ZERO, SingleLanes::ZERO, 0u32);
         for lane in 0..surfaces.count {
             let towards = block.lights.direction.get(lane).dot(surfaces.normal.get(lane));
-            let side = if towards < 0.0 { surfaces.origin_behind(lane) } else { surfaces.origin.get(lane) };
+            let is_behind = towards < 0.0;
+            let side = if is_behind { surfaces.origin_behind(lane) } else { surfaces.origin.get(lane) };
+            let (here, through) = (block.media.here[lane], block.media.through[lane]);
+            block.media.of_shadows[lane] = if is_behind { through } else { here };
             origin.set(lane, side);
             brings.set(lane, arriving.get(lane).as_vec3());
             lit |= u32::from(!arriving.get(lane).is_black()) << lane;
@@ -93,7 +117,7 @@ impl WavefrontWorker<'_> {
     }
 
     /// Stage: sixteen paths go on from surfaces of any kind, unless roulette ends them.
-    fn scatter_from_any(&mut self, numbers: &SamplerLanes, bounce: u32) {
+    fn scatter_from_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32) {
         let plays = self.plays(bounce);
         let (level, block) = (self.level, &mut *self.block);
         let (mut choice, mut single) = ([0.0; LANES], [[0.0; LANES]; 2]);
@@ -102,7 +126,14 @@ impl WavefrontWorker<'_> {
         let u = single.map(|u| u.map(f64::from));
         let next = &mut block.next;
         block.bsdf.sample(level, &block.surfaces, &block.throughput, (&mut choice, &u), next);
-        let guided = &block.bsdf.guided;
+        self.part_wavelengths();
+        let block = &mut *self.block;
+        if let Some(media) = &mut self.media {
+            for lane in (0..block.surfaces.count).filter(|&lane| block.bsdf.is_through(lane)) {
+                media.paths[own(block.sample[lane], samples) as usize].media = block.media.through[lane];
+            }
+        }
+        let (guided, next) = (&block.bsdf.guided, &mut block.next);
         if plays {
             let mut chance = [0.0; LANES];
             numbers.one(level, &[dimensions.roulette(); LANES], &mut chance);

@@ -2,17 +2,24 @@
 
 use super::direct_light::power_heuristic;
 use super::queues::{Flags, PathQueue};
+use super::waves::PathWaves;
 use raywright_base::math::{DVec3, Hit, LANES, Ray};
 use raywright_optics::Rgb;
+use raywright_optics::spectra::Waves;
 use raywright_scene::textures::TexturePoint;
-use raywright_scene::{LightSampleContext, Scene, SurfaceBlock};
+use raywright_scene::{LightSampleContext, LookupContext, Scene, SurfaceBlock};
 use std::f32::consts::FRAC_1_PI;
 
 /// The point and the normal that light was asked for where a path set out.
-fn receiver(queue: &PathQueue, path: usize) -> LightSampleContext {
+fn receiver(queue: &PathQueue, waves: &[PathWaves], path: usize) -> LightSampleContext {
     let [x, y, z] = &queue.normal;
     let normal = if x.is_empty() { DVec3::ZERO } else { DVec3::new(x[path].into(), y[path].into(), z[path].into()) };
-    LightSampleContext { position: queue.rays.origin(path), normal, waves: None }
+    LightSampleContext { position: queue.vertex(path), normal, waves: waves_of(queue, waves, path) }
+}
+
+/// The wavelengths of a path; `None` for red, green and blue.
+fn waves_of(queue: &PathQueue, waves: &[PathWaves], path: usize) -> Option<Waves> {
+    waves.get(queue.sample[path] as usize).map(|waves| waves.now)
 }
 
 /// Whether each of few lights was asked where a path set out.
@@ -26,7 +33,12 @@ fn throughput(queue: &PathQueue, path: usize) -> Rgb {
 }
 
 /// Adds what arrives from outside the scene along the rays of paths that meet nothing.
-pub(super) fn add_outside(scene: &Scene, queue: &PathQueue, which: &[u32], radiance: &mut [Rgb]) {
+pub(super) fn add_outside(
+    scene: &Scene,
+    (queue, waves): (&PathQueue, &[PathWaves]),
+    which: &[u32],
+    radiance: &mut [Rgb],
+) {
     let lights = scene.lights();
     let constant = lights.constant_sky();
     for &i in which {
@@ -42,7 +54,7 @@ pub(super) fn add_outside(scene: &Scene, queue: &PathQueue, which: &[u32], radia
             continue;
         }
         let direction = queue.rays.direction(i);
-        let arriving = lights.infinite_radiance(direction);
+        let arriving = lights.infinite_radiance_at(direction, waves_of(queue, waves, i).as_ref());
         if arriving.is_black() {
             continue;
         }
@@ -50,9 +62,9 @@ pub(super) fn add_outside(scene: &Scene, queue: &PathQueue, which: &[u32], radia
         let arriving = if pdf == f32::INFINITY {
             arriving
         } else if asked_each(queue, i) {
-            lights.outside_weighed(&receiver(queue, i), direction, weight)
+            lights.outside_weighed(&receiver(queue, waves, i), direction, weight)
         } else {
-            arriving * weight(lights.infinite_pdf(&receiver(queue, i), direction))
+            arriving * weight(lights.infinite_pdf(&receiver(queue, waves, i), direction))
         };
         radiance[queue.sample[i] as usize] += throughput(queue, i) * arriving;
     }
@@ -61,7 +73,7 @@ pub(super) fn add_outside(scene: &Scene, queue: &PathQueue, which: &[u32], radia
 /// Adds what surfaces emit that paths have met, with rays so wide.
 pub(super) fn add_emitted(
     scene: &Scene,
-    (queue, hits): (&PathQueue, &[Hit]),
+    (queue, hits, waves): (&PathQueue, &[Hit], &[PathWaves]),
     surfaces: &SurfaceBlock,
     width: &[f32; LANES],
     radiance: &mut [Rgb],
@@ -77,7 +89,10 @@ pub(super) fn add_emitted(
         let emission = if is_instance || lights.emission(shape).needs().any() {
             let (ray, hit) = scene.geometry().hit_of_lane((&queue.rays, hits), surfaces, lane);
             let surface = scene.geometry().surface(&ray, &hit);
-            scene.emission_at(&surface).sent(scene.geometry(), &ray, &hit, &surface, || f64::from(width[lane]))
+            scene.emission_at(&surface).sent(scene.geometry(), &ray, &hit, &surface, || {
+                let waves = waves_of(queue, waves, surfaces.index[lane] as usize);
+                LookupContext { width: width[lane].into(), waves }
+            })
         } else {
             lights.emission(shape).towards(cosine, &TexturePoint::NOWHERE)
         };
@@ -89,11 +104,13 @@ pub(super) fn add_emitted(
         let weight = if pdf == f32::INFINITY {
             1.0
         } else {
-            let (geometry, receiver) = (scene.geometry(), receiver(queue, i));
+            let (geometry, receiver) = (scene.geometry(), receiver(queue, waves, i));
             let (ray, hit) = if is_instance {
-                geometry.hit_of_lane((&queue.rays, hits), surfaces, lane)
+                let (ray, hit) = geometry.hit_of_lane((&queue.rays, hits), surfaces, lane);
+                let way = (ray.origin - receiver.position).length();
+                (Ray { origin: receiver.position, ..ray }, Hit { t: hit.t + way, ..hit })
             } else {
-                let ray = Ray::new(queue.rays.origin(i), queue.rays.direction(i));
+                let ray = Ray::new(receiver.position, queue.rays.direction(i));
                 let t = (surfaces.position.get(lane) - ray.origin).length();
                 (ray, Hit { t, primitive: surfaces.primitive[lane], ..Hit::MISS })
             };

@@ -3,7 +3,7 @@
 use super::worker::{BATCH, WavefrontWorker};
 use crate::CameraSamples;
 use crate::dimensions::Dimensions;
-use crate::path_sharing::{PathSharing, SharingPoint};
+use crate::path_sharing::SharingPoint;
 use raywright_base::math::Vec3;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -56,7 +56,6 @@ impl WavefrontWorker<'_> {
         cancel: &Cancel,
         radiance: &mut [Rgb],
     ) {
-        let Some(mut sharing) = self.sharing.take() else { return };
         let mut found = std::mem::take(&mut self.found);
         let (mut groups, mut start) = (groups, 0);
         while !groups.is_empty() && !cancel.is_raised() {
@@ -68,20 +67,28 @@ impl WavefrontWorker<'_> {
             let (these, rest) = groups.split_at(some);
             let radiance = &mut radiance[start..start + count];
             found.clear();
-            found.resize(2 * count, Rgb::ZERO);
-            sharing.begin(count);
-            self.sharing = Some(sharing);
+            found.resize(3 * count, Rgb::ZERO);
+            if let Some(sharing) = &mut self.sharing {
+                sharing.begin(count);
+            }
+            if let Some(sharing) = self.media.as_mut().and_then(|media| media.sharing.as_mut()) {
+                sharing.begin(count);
+            }
             self.follow(samples, start..start + count, cancel, &mut found);
-            sharing = self.sharing.take().unwrap_or_else(|| PathSharing::new(self.level));
             let (own, shared) = found.split_at(count);
             radiance.copy_from_slice(own);
             let number = |sample: u32| {
                 let samplers = samples.samplers.as_ref();
                 samplers.map_or(0.0, |all| all.get(start + sample as usize).one(Dimensions::SHARING))
             };
-            sharing.share(self.scene, these, shared, cancel, radiance, number);
+            if let Some(sharing) = &mut self.sharing {
+                sharing.share(self.scene, these, shared, cancel, radiance, number);
+            }
+            if let Some(sharing) = self.media.as_mut().and_then(|media| media.sharing.as_mut()) {
+                sharing.share(self.scene, these, shared, cancel, radiance);
+            }
             (groups, start) = (rest, start + count);
         }
-        (self.sharing, self.found) = (Some(sharing), found);
+        self.found = found;
     }
 }

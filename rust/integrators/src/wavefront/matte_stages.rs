@@ -7,6 +7,7 @@ use crate::dimensions::Dimensions;
 use raywright_base::math::{LANES, Ray, SingleLanes};
 use raywright_base::sampling::SamplerLanes;
 use raywright_base::timing::{Part, timed};
+use raywright_scene::ReceiverBlock;
 
 impl WavefrontWorker<'_> {
     /// Takes sixteen paths from matte surfaces to their next rays.
@@ -14,6 +15,9 @@ impl WavefrontWorker<'_> {
         timed(Part::Scattering, || self.reflectances.gather(&self.block.surfaces, &mut self.block.reflectance));
         if bounce < 2 && self.sharing.is_some() {
             self.visit(bounce, samples);
+        }
+        if self.extra.media {
+            self.share_beyond_medium(samples, |worker, lane| Some((worker.block.surfaces.normal.get(lane), false)));
         }
         if !self.scene.lights().is_dark() {
             timed(Part::Light, || self.ask_for_light(numbers, bounce));
@@ -36,16 +40,23 @@ impl WavefrontWorker<'_> {
         } else {
             numbers.choice_and_pair(self.level, dimension, &mut choice, &mut u);
         }
-        let (surfaces, normal) = (&block.surfaces, &block.surfaces.normal);
-        lights.draw_block(self.level, geometry, surfaces, normal, &choice, &u, &mut block.lights);
+        let receivers =
+            ReceiverBlock { surfaces: &block.surfaces, normal: &block.surfaces.normal, waves: &block.spectral.waves };
+        lights.draw_block(self.level, geometry, &receivers, &choice, &u, &mut block.lights);
         let (mut arriving, mut is_lit) = (SingleLanes::ZERO, [0; LANES]);
+        let mut follows = if self.follows { 1.0 } else { 0.0 };
+        if self.extra.media {
+            // Weighed when it arrives.
+            direct_light::compare(self.level, &block.surfaces, &block.lights, follows, &mut block.media.ratio);
+            (block.media.of_shadows, follows) = (block.media.here, 0.0);
+        }
         direct_light::reflect(
             self.level,
             &block.surfaces,
             &block.lights,
             &block.reflectance,
             &block.throughput,
-            if self.follows { 1.0 } else { 0.0 },
+            follows,
             &mut arriving,
             &mut is_lit,
         );

@@ -7,14 +7,22 @@ mod bsdf_block;
 mod bsdf_stages;
 mod direct_light;
 mod emission;
+mod flights;
 mod groups;
 mod guided;
 mod mask_stages;
 mod masks;
 mod matte;
 mod matte_stages;
+mod media;
+mod media_sharing;
+mod media_stages;
+mod medium_stacks;
+mod phase_stages;
 mod queues;
 mod shading_frames;
+mod transmittance_stages;
+mod waves;
 mod worker;
 
 use super::{Guide, Job, Session, Worker};
@@ -30,6 +38,8 @@ pub(super) struct Wavefront<'a> {
     shares: bool,
     follows: bool,
     shadows: bool,
+    /// Whether media scatter light, or only dim it.
+    scatters: bool,
     /// Where light comes from by way of what is sharp, if paths are guided and there is any.
     guide: Option<Arc<Guide>>,
 }
@@ -47,22 +57,26 @@ impl<'a> Wavefront<'a> {
         shares: bool,
         guide: Option<Arc<Guide>>,
     ) -> Self {
-        Self { job, max_depth, roulette_depth, shares, follows: true, shadows: true, guide }
+        Self { job, max_depth, roulette_depth, shares, follows: true, shadows: true, scatters: true, guide }
+    }
+
+    /// Paths to a depth that media only dim.
+    pub fn dimmed(job: Job<'a>, max_depth: u32) -> Self {
+        Self { scatters: false, ..Self::new(job, Some(max_depth), u32::MAX, false, None) }
     }
 
     /// Direct light that is drawn, without paths that go on, and with shadows or without.
     pub fn of_drawn_light(job: Job<'a>, shadows: bool) -> Self {
         let (shares, follows) = (false, false);
-        Self { job, max_depth: Some(1), roulette_depth: u32::MAX, shares, follows, shadows, guide: None }
+        Self { shares, follows, shadows, ..Self::dimmed(job, 1) }
     }
 
-    /// Whether a picture is of a scene that has what stages know, and nothing else: surfaces in empty space, seen so
-    /// wide that f32 tells pixels apart.
+    /// Whether a picture is of a scene that has what stages know, and nothing else, seen so wide that f32 tells pixels
+    /// apart.
     pub fn takes(job: &Job<'_>) -> bool {
         let scene = job.scene;
-        let (plan, needs) = (scene.plan(), scene.plan().needs());
+        let plan = scene.plan();
         tells_pixels_apart(job)
-            && !(needs.nested || needs.media || needs.waves)
             && !plan.normals_as_given()
             && scene.lights().radiances().all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
     }
@@ -86,7 +100,7 @@ impl Session for Wavefront<'_> {
         Box::new(WavefrontWorker::new(
             &self.job,
             depths,
-            (self.shares, self.follows, self.shadows),
+            (self.shares, self.follows, self.shadows, self.scatters),
             self.guide.as_deref(),
         ))
     }

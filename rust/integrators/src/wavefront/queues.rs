@@ -1,6 +1,8 @@
 //! Paths and shadow rays that wait for their next stage.
 
-use raywright_base::math::{LANES, PathRays, SingleLanes, VectorLanes};
+use super::flights::Flight;
+use super::media::PathMedia;
+use raywright_base::math::{DVec3, LANES, PathRays, Ray, SingleLanes, VectorLanes};
 use raywright_base::simd::{Column, Level, pack};
 
 /// Paths on their way, each number in a column.
@@ -15,6 +17,8 @@ pub(super) struct PathQueue {
     pub normal: [Vec<f32>; 3],
     /// Whose sample it is.
     pub sample: Vec<u32>,
+    /// Where it was scattered last, if its ray may start elsewhere: behind boundaries that are no surfaces.
+    vertex: [Vec<f64>; 3],
     /// The ratio of radiance at its start to radiance here due to the index of refraction alone, and [`Flags`]; in
     /// scenes that have more than matte surfaces.
     pub scale: Vec<f32>,
@@ -36,6 +40,8 @@ impl Flags {
     pub const ASKED_EACH: u32 = 1;
     /// It has come to a surface that reflects more than arrives, in a channel.
     pub const HAS_GAMUT_EXCESS: u32 = 2;
+    /// Dispersion has ended all of its wavelengths but one.
+    pub const SINGLE: u32 = 4;
 }
 
 /// Which of the columns that few scenes need a queue has.
@@ -53,6 +59,8 @@ pub(super) struct Extra {
     pub time: bool,
     /// All of the hits of rays, not their primitives alone.
     pub hits: bool,
+    /// Media of shadow rays.
+    pub media: bool,
 }
 
 /// Shadow rays, and what they bring if nothing blocks them.
@@ -62,6 +70,10 @@ pub(super) struct ShadowQueue {
     pub arriving: [Vec<f32>; 3],
     /// At whose sample.
     pub sample: Vec<u32>,
+    /// The media in which each starts, and the density of scattering in its direction over that of its draw; in scenes
+    /// with media.
+    pub media: Vec<u32>,
+    pub ratio: Vec<f32>,
 }
 
 /// Paths that go on, a lane each.
@@ -91,6 +103,8 @@ pub(super) struct ShadowLanes<'a> {
     pub arriving: &'a SingleLanes,
     pub sample: &'a [u32; LANES],
     pub time: &'a [f64; LANES],
+    pub media: &'a [u32; LANES],
+    pub ratio: &'a [f32; LANES],
 }
 
 fn three(room: usize) -> [Vec<f32>; 3] {
@@ -108,6 +122,7 @@ impl PathQueue {
             pdf: vec![0.0; room],
             normal: three(if extra.normal { room } else { 0 }),
             sample: vec![0; room],
+            vertex: [0; 3].map(|_| vec![0.0; if extra.media { room } else { 0 }]),
             scale: vec![1.0; if extra.state { room } else { 0 }],
             flags: vec![0; if extra.state { room } else { 0 }],
             aimed: vec![1.0; if extra.aimed { room } else { 0 }],
@@ -168,12 +183,47 @@ impl PathQueue {
     }
 }
 
+impl PathQueue {
+    /// Where a path was scattered last.
+    #[inline]
+    pub fn vertex(&self, path: usize) -> DVec3 {
+        let [x, y, z] = &self.vertex;
+        if x.is_empty() { self.rays.origin(path) } else { DVec3::new(x[path], y[path], z[path]) }
+    }
+
+    /// All paths are where they were scattered last.
+    pub fn set_vertices(&mut self) {
+        let len = self.rays.len;
+        for (to, from) in self.vertex.iter_mut().zip(&self.rays.origin) {
+            to[..len].copy_from_slice(&from[..len]);
+        }
+    }
+
+    /// Takes over what a path has come to by its flight. Its density becomes that of the flight too, over what it is
+    /// where light is drawn in place of the flight.
+    #[inline]
+    pub fn arrive(&mut self, flight: &Flight, ray: &Ray, path: &mut PathMedia) {
+        for axis in 0..3 {
+            self.rays.origin[axis][flight.place as usize] = ray.origin[axis];
+        }
+        let (i, weights) = (flight.place as usize, &flight.weights);
+        let (drawn, throughput) = (weights.drawn.mean(), weights.throughput());
+        for channel in 0..3 {
+            self.throughput[channel][i] = throughput[channel] as f32;
+        }
+        self.pdf[i] *= (drawn / weights.asked.mean()) as f32;
+        (path.media, path.drawn) = (flight.media, weights.drawn / drawn);
+    }
+}
+
 impl ShadowQueue {
     /// Room for so many rays.
     pub fn with_room(most: usize, extra: Extra) -> Self {
         let (room, rays) = (most + LANES, PathRays::with_room(most, false));
         let rays = if extra.time { rays.with_times() } else { rays };
-        Self { rays, arriving: three(room), sample: vec![0; room] }
+        let of_media = if extra.media { room } else { 0 };
+        let (media, ratio) = (vec![0; of_media], vec![0.0; of_media]);
+        Self { rays, arriving: three(room), sample: vec![0; room], media, ratio }
     }
 
     /// Appends the rays of the lanes in a mask.
@@ -199,6 +249,11 @@ impl ShadowQueue {
             Column::new(shadows.sample, &mut self.sample[at..]),
         ];
         pack(level, mask, &columns);
+        if !self.media.is_empty() {
+            let columns =
+                [Column::new(shadows.media, &mut self.media[at..]), Column::new(shadows.ratio, &mut self.ratio[at..])];
+            pack(level, mask, &columns);
+        }
         if !self.rays.time.is_empty() {
             pack(level, mask, &[Column::new(shadows.time, &mut self.rays.time[at..])]);
         }

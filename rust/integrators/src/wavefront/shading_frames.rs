@@ -3,7 +3,9 @@
 use raywright_base::math::{DVec3, Frame, Hit, LANES, PathRays, Ray, SingleLanes, VectorLanes};
 use raywright_base::simd::{Level, loops};
 use raywright_optics::{Bsdf, Diffuse, Null, Rgb};
-use raywright_scene::{Geometry, SurfaceBlock, SurfaceInteraction, SurfaceInteractionLanes, SurfaceLanes};
+use raywright_scene::{
+    Geometry, SurfaceBlock, SurfaceInteraction, SurfaceInteractionLanes, SurfaceLanes, SurfacePoint,
+};
 
 /// Frames of surfaces, a lane each.
 pub(super) struct ShadingFrames {
@@ -132,13 +134,18 @@ impl ShadingFrames {
     pub fn replace<B: Bsdf>(
         &mut self,
         lane: usize,
-        make: impl FnOnce(&Ray, &Hit, raywright_scene::SurfacePoint) -> SurfaceInteraction<B>,
+        make: impl FnOnce(&Ray, &Hit, SurfacePoint) -> SurfaceInteraction<B>,
     ) -> Option<B> {
         let all = self.interactions.as_mut()?;
         let here = make(&all.rays[lane], &all.hits[lane], all.surfaces.get(lane));
         all.lanes.set(lane, &here);
         self.wo.set(lane, here.wo());
         Some(here.into_bsdf())
+    }
+
+    /// The surface of a lane, where more is known than of its block.
+    pub fn surface(&self, lane: usize) -> Option<SurfacePoint> {
+        self.interactions.as_ref().map(|all| all.surfaces.get(lane))
     }
 
     /// The shading normal of a lane on the side that its ray came from, and whether that was bent towards the ray.

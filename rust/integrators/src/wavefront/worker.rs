@@ -2,13 +2,16 @@
 
 use super::bsdf_block::{BsdfBlock, Scattered};
 use super::emission;
+use super::flights::Flights;
 use super::masks::Masks;
 use super::matte::Reflectances;
+use super::media::Media;
 use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue};
+use super::waves::{self, PathWaves, WavesBlock};
 use crate::path_sharing::PathSharing;
 use crate::{CameraSample, CameraSamples, Guide, Job, Worker, roulette};
 use raywright_accel::Primitives;
-use raywright_base::math::{Hit, LANES, Ray, SingleLanes, VectorLanes, gather};
+use raywright_base::math::{Hit, LANES, Ray, SingleLanes, Vec3, VectorLanes, gather};
 use raywright_base::sampling::SamplerColumns;
 use raywright_base::simd::Level;
 use raywright_base::timing::{Part, count, timed};
@@ -53,8 +56,16 @@ pub(super) struct WavefrontWorker<'a> {
     pub(super) kinds: Vec<u8>,
     pub(super) extra: Extra,
     pub(super) masks: Option<Masks>,
+    pub(super) media: Option<Media<'a>>,
+    pub(super) flights: Option<Flights<'a>>,
+    /// What arrives along shadow rays through media, and at whose sample.
+    pub(super) arriving: Vec<(u32, Rgb)>,
+    /// By sample, in scenes that need wavelengths.
+    pub(super) waves: Vec<PathWaves>,
     /// What is drawn of each of few lights.
     pub(super) each: Vec<LightBlock>,
+    /// The densities with which surfaces scatter into directions to each of few lights.
+    pub(super) each_pdf: Vec<[f64; LANES]>,
     pub(super) block: Box<Block<'a>>,
 }
 
@@ -68,9 +79,70 @@ pub(super) struct Block<'a> {
     pub(super) lights: LightBlock,
     pub(super) bsdf: BsdfBlock<'a>,
     pub(super) next: Scattered,
+    pub(super) media: MediaBlock,
+    pub(super) spectral: WavesBlock,
+}
+
+/// Sixteen paths in scenes with media.
+pub(super) struct MediaBlock {
+    /// The media in which they come, behind the surface, and in which their shadow rays start.
+    pub here: [u32; LANES],
+    pub through: [u32; LANES],
+    pub of_shadows: [u32; LANES],
+    /// The index of refraction outside of the object.
+    pub outside: [f64; LANES],
+    /// Of directions to light, the density of scattering over that of their draw.
+    pub ratio: [f32; LANES],
+}
+
+impl MediaBlock {
+    /// Of no paths.
+    const NONE: Self = Self {
+        here: [0; LANES],
+        through: [0; LANES],
+        of_shadows: [0; LANES],
+        outside: [1.0; LANES],
+        ratio: [0.0; LANES],
+    };
 }
 
 impl Block<'_> {
+    /// Takes what is known of sixteen paths from their queue.
+    pub(super) fn gather(&mut self, queue: &PathQueue, extra: Extra) {
+        let (which, position) = (&self.surfaces.index, &self.surfaces.position);
+        if extra.time {
+            gather(&queue.rays.time, which, &mut self.time);
+        }
+        for (column, lanes) in queue.throughput.iter().zip(&mut self.throughput.0) {
+            gather(column, which, lanes);
+        }
+        gather(&queue.sample, which, &mut self.sample);
+        if extra.state {
+            gather(&queue.scale, which, &mut self.bsdf.scale);
+            gather(&queue.flags, which, &mut self.bsdf.flags);
+        }
+        if extra.aimed {
+            gather(&queue.aimed, which, &mut self.bsdf.guided.aimed);
+        }
+        if extra.width {
+            let BsdfBlock { width, spread, .. } = &mut self.bsdf;
+            gather(&queue.width, which, width);
+            gather(&queue.spread, which, spread);
+            for lane in 0..LANES {
+                let origin = queue.vertex(which[lane] as usize);
+                let distance = (position.get(lane) - origin).length() as f32;
+                width[lane] = (width[lane] + spread[lane] * distance).abs();
+            }
+        }
+    }
+
+    /// What the path of a lane finds from here on is shared. Roulette keeps the throughput that is lost.
+    pub(super) fn share(&mut self, lane: usize, samples: u32) {
+        self.bsdf.scale[lane] *= self.throughput.get(lane).max_element();
+        self.throughput.set(lane, Vec3::ONE);
+        self.sample[lane] += samples;
+    }
+
     /// Queues shadow rays from the lanes in a mask to the lights drawn there, and what they bring.
     #[inline]
     pub(super) fn queue_shadows(
@@ -89,6 +161,8 @@ impl Block<'_> {
             arriving,
             sample: &self.sample,
             time: &self.time,
+            ratio: &self.media.ratio,
+            media: &self.media.of_shadows,
         };
         shadows.push(level, mask, &rays);
     }
@@ -98,21 +172,24 @@ impl<'a> WavefrontWorker<'a> {
     pub fn new(
         job: &Job<'a>,
         (max_depth, roulette_depth): (Option<u32>, u32),
-        (shares, follows, shadows_block): (bool, bool, bool),
+        (shares, follows, shadows_block, scatters): (bool, bool, bool, bool),
         guide: Option<&'a Guide>,
     ) -> Self {
         let (scene, level) = (job.scene, Level::current().unwrap_or(Level::Scalar));
         let needs = scene.plan().needs();
-        let are_flat = scene.plan().is_constant() && !(needs.smooth || needs.instances || needs.points.width);
-        let scatters = needs.scattering || guide.is_some() || !are_flat;
+        let are_flat =
+            scene.plan().is_constant() && !(needs.smooth || needs.instances || needs.points.width || needs.nested);
+        let has_kinds = needs.scattering || guide.is_some() || !are_flat;
         let normal = scene.lights().ask_for_normals();
         // A ray that passes a mask may come to the same shape again.
-        let hits = needs.instances || needs.motion || needs.masks && needs.shapes;
+        let media = needs.media || needs.nested;
+        let hits = needs.instances || needs.motion || needs.masks && needs.shapes && !media;
         let (aimed, width, time) = (guide.is_some(), needs.points.width, needs.motion);
-        let extra = Extra { normal, state: scatters, aimed, width, time, hits };
-        let kinds = if scatters { Plan::KINDS } else { 1 };
+        let state = has_kinds || media || needs.waves;
+        let extra = Extra { normal, state, aimed, width, time, hits, media };
+        let kinds = if has_kinds { Plan::KINDS } else { 1 };
         let count = scene.geometry().count();
-        let few = if scatters && count <= BATCH { count as u32 } else { 0 };
+        let few = if has_kinds && count <= BATCH { count as u32 } else { 0 };
         let zero = SingleLanes::ZERO;
         let block = Block {
             surfaces: SurfaceBlock::NONE,
@@ -123,6 +200,8 @@ impl<'a> WavefrontWorker<'a> {
             lights: LightBlock::NONE,
             bsdf: BsdfBlock::new(are_flat, guide),
             next: Scattered::NONE,
+            media: MediaBlock::NONE,
+            spectral: WavesBlock::NONE,
         };
         Self {
             scene,
@@ -132,7 +211,7 @@ impl<'a> WavefrontWorker<'a> {
             roulette_depth: roulette_depth.min(roulette::AT_LATEST),
             follows,
             shadows_block,
-            sharing: shares.then(|| PathSharing::new(level)),
+            sharing: (shares && !media).then(|| PathSharing::new(level)),
             found: Vec::new(),
             reflectances: Reflectances::new(scene),
             paths: [PathQueue::with_room(BATCH, extra), PathQueue::with_room(BATCH, extra)],
@@ -146,7 +225,12 @@ impl<'a> WavefrontWorker<'a> {
             kinds: (0..few).map(|primitive| kind_of(scene, primitive) as u8).collect(),
             extra,
             masks: Masks::of(scene),
+            media: Media::of(scene, shares, scatters, extra),
+            flights: media.then(|| Flights::new(scene, scatters, extra)),
+            arriving: Vec::new(),
+            waves: Vec::new(),
             each: Vec::new(),
+            each_pdf: Vec::new(),
             block: Box::new(block),
         }
     }
@@ -225,6 +309,9 @@ impl<'a> WavefrontWorker<'a> {
         }
         first[0].truncate(met);
         self.outside.truncate(outside);
+        if let Some(media) = &self.media {
+            self.outside.retain(|&i| !media.is_within[i as usize]);
+        }
         if !rest.is_empty() {
             rest.iter_mut().for_each(Vec::clear);
             let mut matte = 0;
@@ -252,31 +339,19 @@ impl<'a> WavefrontWorker<'a> {
         let geometry = self.scene.geometry();
         let met = (&self.primitives[..], &self.hits[..]);
         geometry.meet_block(self.level, &queue.rays, met, which, &mut block.surfaces);
-        if self.extra.time {
-            gather(&queue.rays.time, &block.surfaces.index, &mut block.time);
+        block.gather(queue, self.extra);
+        let queue = (queue, &self.hits[..], &self.waves[..]);
+        emission::add_emitted(self.scene, queue, &block.surfaces, &block.bsdf.width, radiance);
+    }
+
+    /// Stage: in which media sixteen paths are.
+    pub(super) fn gather_media(&mut self, samples: u32) {
+        let Some(media) = &self.media else { return };
+        let Block { sample, media: block, .. } = &mut *self.block;
+        for lane in 0..LANES {
+            let path = &media.paths[own(sample[lane], samples) as usize];
+            (block.here[lane], block.through[lane], block.outside[lane]) = (path.media, path.through, path.outside);
         }
-        for (column, lanes) in queue.throughput.iter().zip(&mut block.throughput.0) {
-            gather(column, &block.surfaces.index, lanes);
-        }
-        gather(&queue.sample, &block.surfaces.index, &mut block.sample);
-        if self.extra.state {
-            gather(&queue.scale, &block.surfaces.index, &mut block.bsdf.scale);
-            gather(&queue.flags, &block.surfaces.index, &mut block.bsdf.flags);
-        }
-        if self.extra.aimed {
-            gather(&queue.aimed, &block.surfaces.index, &mut block.bsdf.guided.aimed);
-        }
-        if self.extra.width {
-            let BsdfBlock { width, spread, .. } = &mut block.bsdf;
-            gather(&queue.width, &block.surfaces.index, width);
-            gather(&queue.spread, &block.surfaces.index, spread);
-            for lane in 0..LANES {
-                let origin = queue.rays.origin(block.surfaces.index[lane] as usize);
-                let distance = (block.surfaces.position.get(lane) - origin).length() as f32;
-                width[lane] = (width[lane] + spread[lane] * distance).abs();
-            }
-        }
-        emission::add_emitted(self.scene, (queue, &self.hits), &block.surfaces, &block.bsdf.width, radiance);
     }
 
     /// Whether roulette is played after so many bounces. The density with which a path comes to the second point that
@@ -286,8 +361,11 @@ impl<'a> WavefrontWorker<'a> {
     }
 
     /// Stage: shadow rays are followed, and what arrives along those that nothing blocks is added.
-    fn follow_shadows(&mut self, radiance: &mut [Rgb]) {
+    fn follow_shadows(&mut self, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
         self.meet_masked_lamps();
+        if self.media.is_some() && self.shadows_block {
+            return self.follow_shadows_through_media(samples, cancel, radiance);
+        }
         let queue = &self.shadows;
         if self.shadows_block {
             self.scene.are_occluded(self.level, &queue.rays, &mut self.is_occluded);
@@ -310,20 +388,30 @@ impl<'a> WavefrontWorker<'a> {
         radiance: &mut [Rgb],
     ) {
         let samples_here = some.len() as u32;
-        self.start(samples, some);
+        self.start(samples, some.clone());
+        if self.scene.plan().needs().waves {
+            waves::draw(samples, some.clone(), &mut self.waves);
+        }
+        self.start_in_media(samples, some);
         let Some(mut numbers) = self.samplers.as_ref().map(SamplerColumns::lanes) else { return };
         for bounce in 0.. {
             if self.paths[0].rays.len == 0 || cancel.is_raised() {
                 break;
             }
-            timed(Part::Closest, || {
-                self.find_closest();
-                self.pass_masks(&mut numbers, bounce, samples_here);
-            });
-            self.classify();
-            timed(Part::Arriving, || emission::add_outside(self.scene, &self.paths[0], &self.outside, radiance));
-            self.paths[1].rays.len = 0;
             self.shadows.rays.len = 0;
+            if self.media.is_some() {
+                timed(Part::Closest, || self.fly(&mut numbers, bounce, samples_here, cancel, radiance));
+            } else {
+                timed(Part::Closest, || {
+                    self.find_closest();
+                    self.pass_masks(&mut numbers, bounce, samples_here);
+                });
+            }
+            self.classify();
+            timed(Part::Arriving, || {
+                emission::add_outside(self.scene, (&self.paths[0], &self.waves), &self.outside, radiance);
+            });
+            self.paths[1].rays.len = 0;
             let goes_on = self.max_depth.is_none_or(|depth| bounce < depth);
             for kind in 0..self.met.len() {
                 let met = std::mem::take(&mut self.met[kind]);
@@ -333,8 +421,10 @@ impl<'a> WavefrontWorker<'a> {
                     if !goes_on {
                         continue;
                     }
+                    self.gather_media(samples_here);
+                    self.gather_waves();
                     if let Some(columns) = &self.samplers {
-                        let own = self.block.sample.map(|sample| sample.min(sample.wrapping_sub(samples_here)));
+                        let own = self.block.sample.map(|sample| own(sample, samples_here));
                         timed(Part::Numbers, || columns.gather(&own, &mut numbers));
                     }
                     if kind == Plan::DIFFUSE && !(self.extra.aimed || self.extra.width) {
@@ -346,9 +436,13 @@ impl<'a> WavefrontWorker<'a> {
                 // Its memory is used again.
                 self.met[kind] = met;
             }
-            timed(Part::Shadow, || self.follow_shadows(radiance));
+            if goes_on {
+                self.leave_media(&mut numbers, bounce, samples_here);
+            }
+            timed(Part::Shadow, || self.follow_shadows(samples_here, cancel, radiance));
             self.paths.swap(0, 1);
         }
+        waves::see(&self.waves, radiance);
     }
 }
 
@@ -359,6 +453,12 @@ fn kind_of(scene: &Scene, primitive: u32) -> usize {
     let kind = plan.kind_of_shape(shape);
     let is_matte = || plan.diffuse(shape).is_some() && !geometry.has_normal_at(primitive);
     if kind == Plan::DIFFUSE && !is_matte() { Plan::MIXED } else { kind }
+}
+
+/// The place of a sample in its batch. What is found for sharing has numbers of its own, after those of all samples.
+#[inline(always)]
+pub(super) fn own(sample: u32, samples: u32) -> u32 {
+    sample.min(sample.wrapping_sub(samples)).min(sample.wrapping_sub(samples.wrapping_mul(2)))
 }
 
 /// The lanes that have all bits, of the first so many, as bits.
@@ -398,7 +498,7 @@ impl Worker for WavefrontWorker<'_> {
     ) {
         assert_eq!(samples.len, radiance.len());
         radiance.fill(Rgb::ZERO);
-        if self.sharing.is_some() {
+        if self.shares() {
             let each = vec![1; if groups.is_empty() { samples.len } else { 0 }];
             return self.follow_groups(samples, if groups.is_empty() { &each } else { groups }, cancel, radiance);
         }

@@ -63,6 +63,13 @@ impl SurfaceBlock {
         let position = self.position.get(lane);
         position - (self.origin.get(lane) - position)
     }
+
+    /// The origin of rays that leave to either side.
+    #[inline]
+    pub fn ray_origin(&self, lane: usize) -> RayOrigin {
+        let position = self.position.get(lane);
+        RayOrigin::with(position, self.origin.get(lane) - position)
+    }
 }
 
 loops! {

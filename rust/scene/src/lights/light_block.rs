@@ -11,6 +11,7 @@ use raywright_base::math::single::{cosine_hemisphere, to_world};
 use raywright_base::math::{LANES, PathRays, Ray, SingleLanes, Vec3, VectorLanes};
 use raywright_base::simd::{Level, loops};
 use raywright_optics::Rgb;
+use raywright_optics::spectra::Waves;
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Light on its way to points of surfaces, a lane each.
@@ -54,6 +55,26 @@ loops! {
             weight.set(i, radiance * (PI / local.z));
             pdf[i] = local.z * FRAC_1_PI;
         }
+    }
+}
+
+/// Points of surfaces or of media that ask for light, a lane each.
+#[derive(Clone, Copy, Debug)]
+pub struct ReceiverBlock<'a> {
+    /// Where they are.
+    pub surfaces: &'a SurfaceBlock,
+    /// Normals of surfaces that reflect only; zero of others, and in media.
+    pub normal: &'a SingleLanes,
+    /// Wavelengths of the light; `None` for red, green and blue.
+    pub waves: &'a [Option<Waves>; LANES],
+}
+
+impl ReceiverBlock<'_> {
+    /// The receiver of a lane.
+    fn get(&self, lane: usize) -> LightSampleContext {
+        let (normal, waves) = (self.normal.get(lane), self.waves[lane]);
+        let place = if normal == Vec3::ZERO { &self.surfaces.position } else { &self.surfaces.origin };
+        LightSampleContext { position: place.get(lane), normal: normal.as_dvec3(), waves }
     }
 }
 
@@ -121,19 +142,17 @@ impl Lights {
         }
     }
 
-    /// Draws light for points of surfaces: of which light by `choice`, from where by `u`. Surfaces that reflect only
-    /// have their normal as `normal`, others zero.
-    #[allow(clippy::too_many_arguments)]
+    /// Draws light for points: of which light by `choice`, from where by `u`.
     pub fn draw_block(
         &self,
         level: Level,
         geometry: &Geometry,
-        surfaces: &SurfaceBlock,
-        normal: &SingleLanes,
+        receivers: &ReceiverBlock<'_>,
         choice: &[f64; LANES],
         u: &[[f32; LANES]; 2],
         lights: &mut LightBlock,
     ) {
+        let ReceiverBlock { surfaces, normal, .. } = *receivers;
         if let (true, Some(choices)) = (self.infinite.is_dark(), &self.choice) {
             if matches!(choices, Choice::Power(_)) && self.are_triangles && self.lamps.len() <= FEW_LAMPS {
                 let mut lamps = LampLanes::NONE;
@@ -144,12 +163,12 @@ impl Lights {
                 return draw_lamps(level, surfaces, &lamps, u, lights);
             }
             let mut chosen = [None; LANES];
-            let mut receivers = LightContextLanes::NONE;
+            let mut contexts = LightContextLanes::NONE;
             for lane in 0..LANES {
-                receivers.set(lane, &receiver(surfaces, normal, lane));
+                contexts.set(lane, &receivers.get(lane));
             }
-            choices.sample_lanes(&receivers, choice, &mut chosen);
-            return self.draw_chosen(level, geometry, (surfaces, normal), &chosen, u, lights);
+            choices.sample_lanes(&contexts, choice, &mut chosen);
+            return self.draw_chosen(level, geometry, receivers, &chosen, u, lights);
         }
         let sky = self.constant_sky();
         if let Some(radiance) = sky {
@@ -159,7 +178,7 @@ impl Lights {
         }
         // The sky above a surface is drawn already.
         for lane in (0..surfaces.count).filter(|&lane| sky.is_none() || normal.get(lane) == Vec3::ZERO) {
-            let (receiver, u) = (receiver(surfaces, normal, lane), [u[0][lane].into(), u[1][lane].into()]);
+            let (receiver, u) = (receivers.get(lane), [u[0][lane].into(), u[1][lane].into()]);
             lights.set(lane, &receiver, self.sample(geometry, &receiver, choice[lane], u));
         }
     }
@@ -171,14 +190,14 @@ impl Lights {
         one: u32,
         level: Level,
         geometry: &Geometry,
-        (surfaces, normal): (&SurfaceBlock, &SingleLanes),
+        receivers: &ReceiverBlock<'_>,
         choice: &[f64; LANES],
         u: &[[f32; LANES]; 2],
         lights: &mut LightBlock,
     ) {
         if !self.is_within(one) {
-            for lane in 0..surfaces.count {
-                let (receiver, u) = (receiver(surfaces, normal, lane), [u[0][lane].into(), u[1][lane].into()]);
+            for lane in 0..receivers.surfaces.count {
+                let (receiver, u) = (receivers.get(lane), [u[0][lane].into(), u[1][lane].into()]);
                 let drawn = self.sample_one(one, geometry, &receiver, &mut || choice[lane], u);
                 lights.set(lane, &receiver, drawn);
             }
@@ -189,7 +208,7 @@ impl Lights {
             let (number, share, x) = self.one_within(one, u[0][lane].into());
             (own[0][lane], chosen[lane]) = (x as f32, Some((number, share)));
         }
-        self.draw_chosen(level, geometry, (surfaces, normal), &chosen, &own, lights);
+        self.draw_chosen(level, geometry, receivers, &chosen, &own, lights);
     }
 
     /// Draws light of lights within the scene, given by their numbers and the probabilities of these.
@@ -197,11 +216,12 @@ impl Lights {
         &self,
         level: Level,
         geometry: &Geometry,
-        (surfaces, normal): (&SurfaceBlock, &SingleLanes),
+        receivers: &ReceiverBlock<'_>,
         chosen: &[Option<(usize, f64)>; LANES],
         u: &[[f32; LANES]; 2],
         lights: &mut LightBlock,
     ) {
+        let surfaces = receivers.surfaces;
         let mut lamps = LampLanes::NONE;
         let (mut triangles, mut spheres, mut others) = (0u32, 0u32, 0u32);
         for (lane, chosen) in chosen.iter().enumerate().take(surfaces.count) {
@@ -236,7 +256,7 @@ impl Lights {
             }
         }
         for lane in (0..surfaces.count).filter(|lane| others >> lane & 1 == 1) {
-            let (receiver, u) = (receiver(surfaces, normal, lane), [u[0][lane].into(), u[1][lane].into()]);
+            let (receiver, u) = (receivers.get(lane), [u[0][lane].into(), u[1][lane].into()]);
             let drawn = chosen[lane].and_then(|(number, probability)| {
                 Some(self.sample_within(number, geometry, &receiver, u)?.chosen(probability))
             });
@@ -260,13 +280,4 @@ fn draw_lamps(
     for lane in 0..LANES {
         t_max[lane] = PathRays::END * f64::from(distance[lane]);
     }
-}
-
-/// Who asks for light in a lane: a place on the side that the ray came from, or one in free space where a surface
-/// transmits ([`crate::Interaction::light_context`]).
-#[inline]
-fn receiver(surfaces: &SurfaceBlock, normal: &SingleLanes, lane: usize) -> LightSampleContext {
-    let normal = normal.get(lane);
-    let place = if normal == Vec3::ZERO { &surfaces.position } else { &surfaces.origin };
-    LightSampleContext { position: place.get(lane), normal: normal.as_dvec3(), waves: None }
 }

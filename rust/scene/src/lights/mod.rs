@@ -45,7 +45,7 @@ pub use directional::DirectionalLight;
 pub use emission_sample::{EmissionPdf, EmissionSample, PointEmission, Source};
 pub use emitters::{EmissionNumbers, Emitters, not_drawn};
 pub use light::{Light, Place, Reach};
-pub use light_block::LightBlock;
+pub use light_block::{LightBlock, ReceiverBlock};
 pub use light_lanes::{LightContextLanes, LightLanes};
 pub use light_sample::LightSample;
 pub use light_sample_context::LightSampleContext;

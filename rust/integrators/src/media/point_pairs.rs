@@ -6,7 +6,7 @@ use raywright_base::simd::{Level, loops};
 use raywright_optics::{Phase, PhaseTerms, Rgb};
 
 /// Scattering points of paths, one column per coordinate, and their factors to another point.
-pub(super) struct Takers {
+pub(crate) struct Takers {
     level: Level,
     position: [Vec<f64>; 3],
     before: [Vec<f64>; 3],
@@ -18,14 +18,14 @@ pub(super) struct Takers {
 }
 
 /// A target point and two unit directions from it.
-pub(super) struct TargetDirections {
+pub(crate) struct TargetDirections {
     pub to: DVec3,
     pub onward: DVec3,
     pub to_light: DVec3,
 }
 
 /// Factors of a pair of points.
-pub(super) struct PairFactors {
+pub(crate) struct PairFactors {
     /// The phase function and the surface cosine, over the squared distance.
     pub share: f64,
     /// The phase function at the target into its two directions; 1 and 0 for a surface, which reflects uniformly.

@@ -1,7 +1,7 @@
 //! Transmittance along ray segments.
 
 use super::distance_sampling::MediumSegment;
-use super::path_numbers::PathNumbers;
+use super::path_numbers::FurtherNumbers;
 use super::spectral_mis::Weights;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -23,7 +23,7 @@ impl MediumSegment<'_> {
     /// Estimating Attenuation in Participating Media", 2014, 3.2). If an end of the segment was sampled in a medium,
     /// roulette terminates faint light. Its error is far below that of the sampled point, and most such segments lead
     /// through a whole cloud.
-    pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut PathNumbers, cancel: &Cancel) {
+    pub fn fade(&self, weights: &mut Weights, hero: &mut Option<usize>, numbers: &mut FurtherNumbers, cancel: &Cancel) {
         let scatters = self.scatters && self.medium.scatters();
         let mut start = self.span[0];
         // Optical depth of consecutive cells.
@@ -72,14 +72,14 @@ impl MediumSegment<'_> {
     /// Attenuate light where the extinction lies between two bounds: analytically by the lower bound, and by ratio
     /// tracking for the rest.
     #[allow(clippy::too_many_arguments)]
-    pub(super) fn fade_between(
+    pub(crate) fn fade_between(
         &self,
         [least, most]: [Rgb; 2],
         [mut t, end]: [f64; 2],
         scatters: bool,
         weights: &mut Weights,
         hero: usize,
-        numbers: &mut PathNumbers,
+        numbers: &mut FurtherNumbers,
         cancel: &Cancel,
     ) {
         let left = (least * (-(end - t) * self.length)).map(f64::exp);
@@ -110,7 +110,7 @@ impl MediumSegment<'_> {
 }
 
 /// Play one round of roulette.
-fn survive(weights: &mut Weights, numbers: &mut PathNumbers) {
+fn survive(weights: &mut Weights, numbers: &mut FurtherNumbers) {
     if numbers.next() < SURVIVAL {
         weights.carried /= SURVIVAL;
     } else {

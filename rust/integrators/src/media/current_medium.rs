@@ -57,7 +57,7 @@ impl Filled {
 }
 
 /// Return the current medium of a ray, and the ray in medium space; `None` in empty space.
-pub(super) fn around<'a>(scene: &'a Scene, media: &MediumStack<Filled>, ray: &Ray) -> Option<(&'a dyn Medium, Ray)> {
+pub(crate) fn around<'a>(scene: &'a Scene, media: &MediumStack<Filled>, ray: &Ray) -> Option<(&'a dyn Medium, Ray)> {
     let Some(&Filled { shape: (primitive, inner), .. }) = media.top() else {
         return scene.surrounding().map(|medium| (medium, *ray));
     };

@@ -7,24 +7,52 @@ use raywright_base::sampling::Sampler;
 /// collisions along a ray, use a sequence of further numbers.
 pub(crate) struct PathNumbers<'s> {
     sampler: &'s mut Sampler,
-    /// An independent sequence, and the count of numbers drawn from it.
-    more: Sampler,
-    taken: u32,
+    pub more: FurtherNumbers,
     /// Dimensions of the path's current ray.
     pub ray: Dimensions,
+}
+
+/// A sequence of random numbers without an end.
+pub(crate) struct FurtherNumbers {
+    sampler: Sampler,
+    /// How many have been drawn.
+    taken: u32,
+}
+
+impl FurtherNumbers {
+    /// The sequence of a sampler, whose dimensions have no other use.
+    pub fn new(sampler: Sampler) -> Self {
+        Self { sampler, taken: 0 }
+    }
+
+    /// Return the next number in [0, 1).
+    pub fn next(&mut self) -> f64 {
+        self.taken = self.taken.wrapping_add(1);
+        self.sampler.one(self.taken)
+    }
+
+    /// Choose one of three wavelengths.
+    pub fn hero(&mut self) -> usize {
+        ((self.next() * 3.0) as usize).min(2)
+    }
+
+    /// Sample an exponential optical depth.
+    pub fn depth(&mut self) -> f64 {
+        depth(self.next())
+    }
 }
 
 impl<'s> PathNumbers<'s> {
     /// Make the numbers of a sample.
     pub fn new(sampler: &'s mut Sampler) -> Self {
-        let more = sampler.paired();
-        Self { sampler, more, taken: 0, ray: Dimensions::of(0, 0) }
+        let more = FurtherNumbers::new(sampler.paired());
+        Self { sampler, more, ray: Dimensions::of(0, 0) }
     }
 
     /// Make the numbers of a sample whose paired sequence is used by another path.
     pub fn apart(sampler: &'s mut Sampler) -> Self {
-        let more = sampler.apart();
-        Self { sampler, more, taken: 0, ray: Dimensions::of(0, 0) }
+        let more = FurtherNumbers::new(sampler.apart());
+        Self { sampler, more, ray: Dimensions::of(0, 0) }
     }
 
     /// Return a number in [0, 1) of a dimension.
@@ -35,22 +63,6 @@ impl<'s> PathNumbers<'s> {
     /// Return a pair in (0, 1) of a dimension.
     pub fn two(&mut self, dimension: u32) -> [f64; 2] {
         self.sampler.two(dimension)
-    }
-
-    /// Return the next number in [0, 1) of the sequence.
-    pub fn next(&mut self) -> f64 {
-        self.taken = self.taken.wrapping_add(1);
-        self.more.one(self.taken)
-    }
-
-    /// Choose one of three wavelengths by the next number.
-    pub fn hero(&mut self) -> usize {
-        ((self.next() * 3.0) as usize).min(2)
-    }
-
-    /// Sample an exponential optical depth by the next number.
-    pub fn depth(&mut self) -> f64 {
-        depth(self.next())
     }
 }
 

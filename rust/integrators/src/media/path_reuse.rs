@@ -1,16 +1,14 @@
 //! Path reuse in homogeneous media.
 
-use super::current_medium::Filled;
-use super::path_state::PathState;
 use super::point_pairs::{Takers, TargetDirections};
-use super::scattering::Scattering;
-use crate::nesting::Filling;
+use crate::media::current_medium::Filled;
+use crate::nesting::{Filling, MediumStack};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::workers::Cancel;
-use raywright_optics::{Bsdf, Phase, Rgb};
+use raywright_optics::{Phase, Rgb};
 use raywright_scene::lights::Place;
 use raywright_scene::media::Coefficients;
-use raywright_scene::{Interaction, RayOrigin, Scene, SurfaceInteraction};
+use raywright_scene::{RayOrigin, Scene};
 use std::f64::consts::FRAC_1_PI;
 
 /// Return whether paths can be reused: some medium is homogeneous and scatters, and nothing moves. Scenes with point
@@ -38,14 +36,14 @@ pub(crate) fn can_share(scene: &Scene) -> bool {
 /// directions, and its cosine replaces σ. For several colors, e^(−σs) is the mean, weighted by each color's density of
 /// sampling the path before.
 #[derive(Clone, Copy, Default)]
-pub(super) struct SharedVertices {
+pub(crate) struct SharedVertices {
     pub first: Option<FirstVertex>,
     pub second: Option<SecondVertex>,
 }
 
 /// A first vertex, which receives light.
 #[derive(Clone, Copy)]
-pub(super) struct FirstVertex {
+pub(crate) struct FirstVertex {
     position: DVec3,
     before: DVec3,
     phase: Phase,
@@ -62,7 +60,7 @@ pub(super) struct FirstVertex {
 
 /// A second vertex, which provides light.
 #[derive(Clone, Copy)]
-pub(super) struct SecondVertex {
+pub(crate) struct SecondVertex {
     departure: RayOrigin,
     /// Surface normal on the visible side; `None` in the medium.
     normal: Option<DVec3>,
@@ -70,9 +68,9 @@ pub(super) struct SecondVertex {
     inside: f64,
     is_beyond: bool,
     /// Direction of the light sample and its light; and the sampled direction.
-    to_light: DVec3,
-    lit: Rgb,
-    onward: DVec3,
+    pub to_light: DVec3,
+    pub lit: Rgb,
+    pub onward: DVec3,
     /// Light found along the sampled direction; for a surface, its reflected radiance.
     pub found: Rgb,
 }
@@ -83,52 +81,48 @@ impl FirstVertex {
     /// of 0.95 the error is 120 times larger, and underestimated.
     const NARROWEST: f64 = 256.0;
 
-    /// Return whether reuse is worthwhile at a scattering event.
-    pub fn may_be(here: &Scattering) -> bool {
-        here.phase.greatest() <= Self::NARROWEST * 0.25 * FRAC_1_PI
-    }
-
-    /// Make a first vertex. `is_limited` says that the path length is limited.
-    pub fn new(here: &Scattering, of: Coefficients, path: &PathState, is_limited: bool) -> Self {
-        let weights = &path.weights;
-        Self {
-            position: here.position,
-            before: here.before,
-            phase: here.phase,
-            here: of,
-            brought: weights.throughput(),
-            drawn: weights.drawn / (3.0 * weights.drawn.mean()),
-            among: (Filled::there(&path.media), if is_limited { path.bounce } else { 0 }),
-            is_alone: path.media.depth() == 1,
-        }
+    /// Make a first vertex at a point where a medium of these coefficients scatters a path, which comes in a direction
+    /// with a throughput, after so many bounces if their number is limited; `None` if reuse is not worthwhile there.
+    pub fn new(
+        (position, before): (DVec3, DVec3),
+        (phase, here): (Phase, Coefficients),
+        (throughput, drawn): (Rgb, Rgb),
+        media: &MediumStack<Filled>,
+        bounces: Option<u32>,
+    ) -> Option<Self> {
+        let is_alone = media.depth() == 1;
+        let among = (Filled::there(media), bounces.unwrap_or(0));
+        let vertex = Self { position, before, phase, here, brought: throughput, drawn: drawn / 3.0, among, is_alone };
+        (phase.greatest() <= Self::NARROWEST * 0.25 * FRAC_1_PI).then_some(vertex)
     }
 }
 
 impl SecondVertex {
+    /// Density of the sampled direction in the medium, in place of each phase function's: one weight for all
+    /// receivers.
+    pub const PDF: f64 = 0.25 * FRAC_1_PI;
+
     /// Make a second vertex in the medium.
-    pub fn of_medium(position: DVec3, (to_light, lit): (DVec3, Rgb), onward: DVec3) -> Self {
-        let (normal, inside, is_beyond) = (None, 1.0, false);
-        let departure = RayOrigin::free(position);
-        Self { departure, normal, inside, is_beyond, to_light, lit, onward, found: Rgb::ZERO }
+    pub fn of_medium(position: DVec3) -> Self {
+        let (departure, normal, inside, is_beyond) = (RayOrigin::free(position), None, 1.0, false);
+        Self { departure, normal, inside, is_beyond, ..Self::AT_NOTHING }
     }
 
-    /// Make a second vertex on a surface at a `t` of the path's ray, if its reflected radiance is the same in all
-    /// directions.
-    pub fn of_surface<B: Bsdf>(here: &SurfaceInteraction<B>, path: &PathState, t: f64) -> Option<Self> {
-        let is_matt = here.bsdf().diffuse().is_some() && here.is_flat() && !here.is_bent() && here.cosine() > 0.0;
-        let is_beyond = path.passed > 0;
-        let second = Self {
-            departure: here.ray_origin(),
-            normal: Some(here.normal()),
-            inside: if is_beyond { path.ray.t_min / t } else { 1.0 },
-            is_beyond,
-            to_light: DVec3::X,
-            lit: Rgb::ZERO,
-            onward: DVec3::X,
-            found: Rgb::ZERO,
-        };
-        is_matt.then_some(second)
+    /// Make a second vertex on a matte surface. The path came there in the medium for a share of its way.
+    pub fn of_surface(departure: RayOrigin, normal: DVec3, inside: f64) -> Self {
+        Self { departure, normal: Some(normal), inside, is_beyond: inside < 1.0, ..Self::AT_NOTHING }
     }
+
+    const AT_NOTHING: Self = Self {
+        departure: RayOrigin::free(DVec3::ZERO),
+        normal: None,
+        inside: 1.0,
+        is_beyond: false,
+        to_light: DVec3::X,
+        lit: Rgb::ZERO,
+        onward: DVec3::X,
+        found: Rgb::ZERO,
+    };
 
     /// Return whether it provides no light.
     fn is_black(&self) -> bool {
@@ -150,7 +144,7 @@ impl SecondVertex {
 
 /// Path reuse, with storage for one group at a time.
 #[derive(Default)]
-pub(super) struct Reuse {
+pub(crate) struct Reuse {
     takers: Takers,
     /// Samples that receive and samples that provide light.
     taking: Vec<usize>,

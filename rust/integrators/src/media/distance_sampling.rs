@@ -1,6 +1,6 @@
 //! Distance sampling in a medium.
 
-use super::path_numbers::PathNumbers;
+use super::path_numbers::FurtherNumbers;
 use super::spectral_mis::Weights;
 use raywright_base::math::Ray;
 use raywright_base::workers::Cancel;
@@ -9,7 +9,7 @@ use raywright_optics::spectra::Waves;
 use raywright_scene::media::{Coefficients, Content, Medium, Stretch};
 
 /// A segment of a ray in a medium.
-pub(super) struct MediumSegment<'a> {
+pub(crate) struct MediumSegment<'a> {
     pub medium: &'a dyn Medium,
     /// The ray in medium space.
     pub ray: Ray,
@@ -41,13 +41,13 @@ pub(crate) struct Collision {
 impl MediumSegment<'_> {
     /// Return the world length between two `t`.
     #[inline]
-    pub(super) fn way(&self, from: f64, to: f64) -> f64 {
+    pub(crate) fn way(&self, from: f64, to: f64) -> f64 {
         (to - from) * self.length
     }
 
     /// Return the coefficients at a `t`.
     #[inline]
-    pub(super) fn at(&self, t: f64) -> Coefficients {
+    pub(crate) fn at(&self, t: f64) -> Coefficients {
         let point = self.ray.at(t);
         match &self.waves {
             Some(waves) => self.medium.at_waves(point, waves),
@@ -57,7 +57,7 @@ impl MediumSegment<'_> {
 
     /// Return the extinction at a `t`.
     #[inline]
-    pub(super) fn extinction(&self, t: f64) -> Rgb {
+    pub(crate) fn extinction(&self, t: f64) -> Rgb {
         match &self.waves {
             Some(waves) => self.medium.at_waves(self.ray.at(t), waves).extinction,
             None => self.medium.extinction(self.ray.at(t)),
@@ -66,7 +66,7 @@ impl MediumSegment<'_> {
 
     /// Return the contents of a stretch.
     #[inline]
-    pub(super) fn content(&self, stretch: &Stretch) -> Content {
+    pub(crate) fn content(&self, stretch: &Stretch) -> Content {
         match (stretch.content, &self.waves) {
             (Content::Even(here), Some(waves)) => Content::Even(self.medium.by_waves(here, waves)),
             (Content::Varies([least, most]), Some(waves)) if self.medium.has_waves() => {
@@ -87,7 +87,7 @@ impl MediumSegment<'_> {
         &self,
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
-        numbers: &mut PathNumbers,
+        numbers: &mut FurtherNumbers,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> Option<Collision> {
@@ -162,7 +162,7 @@ impl MediumSegment<'_> {
         [mut t, end]: [f64; 2],
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
-        numbers: &mut PathNumbers,
+        numbers: &mut FurtherNumbers,
         cancel: &Cancel,
         light: &mut Rgb,
     ) -> Option<Collision> {

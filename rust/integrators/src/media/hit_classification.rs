@@ -25,7 +25,7 @@ pub(crate) enum ClassifiedHit {
 
 /// Classify a hit of a ray in given media. A boundary that neither reflects nor refracts is no surface, unless an open
 /// surface coincides with it, such as the floor under smoke.
-pub(super) async fn come_to(
+pub(crate) async fn come_to(
     (scene, asks): (&Scene, impl TraceRays),
     ray: &Ray,
     hit: &Hit,
@@ -38,8 +38,8 @@ pub(super) async fn come_to(
             let outside = media.ior_around(scene, hit);
             ClassifiedHit::Surface { hit: *hit, outside, through: *media, beyond: at.1 }
         }
-        Vicinity::Nothing(_) => meet_at(scene, ray, at, media, std::slice::from_ref(hit)),
-        Vicinity::Window(window) => asks.crossed(&window, |crossed| meet_at(scene, ray, at, media, crossed)).await,
+        Vicinity::Nothing(_) => classify(scene, ray, at, media, std::slice::from_ref(hit)),
+        Vicinity::Window(window) => asks.crossed(&window, |crossed| classify(scene, ray, at, media, crossed)).await,
     }
 }
 
@@ -48,8 +48,8 @@ pub(crate) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Fill
     at_once(come_to((scene, ImmediateQueries(scene)), ray, hit, media))
 }
 
-/// Classify a hit, given all hits at its position and the `t` from which the ray continues.
-fn meet_at(
+/// Classify a hit of a closed surface, given all hits at its position and the `t` from which the ray continues.
+pub(crate) fn classify(
     scene: &Scene,
     ray: &Ray,
     (hit, beyond): (&Hit, f64),
@@ -77,7 +77,7 @@ fn meet_at(
 
 /// Return the share of light that passes straight through a surface
 /// ([`raywright_scene::materials::Material::straight`]).
-pub(super) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outside: f64) -> f64 {
+pub(crate) fn straight(scene: &Scene, ray: &Ray, hit: &Hit, outside: f64) -> f64 {
     let material = scene.material_of(hit);
     if material.boundary().is_none() {
         return 0.0;

@@ -3,7 +3,7 @@
 //! Their optical depth has a closed form.
 
 use super::distance_sampling::{Collision, MediumSegment};
-use super::path_numbers::PathNumbers;
+use super::path_numbers::FurtherNumbers;
 use super::spectral_mis::Weights;
 use raywright_optics::Rgb;
 use raywright_scene::media::Cubic;
@@ -23,19 +23,19 @@ impl MediumSegment<'_> {
 
     /// Return the optical depth between two `t` of a segment.
     #[inline]
-    pub(super) fn cubic_depth(&self, [start, end]: [f64; 2]) -> Rgb {
+    pub(crate) fn cubic_depth(&self, [start, end]: [f64; 2]) -> Rgb {
         self.cubic([start, end]).mean() * self.way(start, end)
     }
 
     /// Sample a collision in a segment as [`MediumSegment::fly`] does. `passed` accumulates the optical depth of
     /// consecutive segments, which the weights do not include yet.
-    pub(super) fn fly_through_cell(
+    pub(crate) fn fly_through_cell(
         &self,
         span: [f64; 2],
         passed: &mut Rgb,
         weights: &mut Weights,
         (hero, depth): (usize, &mut f64),
-        numbers: &mut PathNumbers,
+        numbers: &mut FurtherNumbers,
         light: &mut Rgb,
     ) -> Option<Collision> {
         let [start, end] = span;
@@ -73,7 +73,7 @@ impl MediumSegment<'_> {
     }
 
     /// Apply the accumulated optical depth to the weights.
-    pub(super) fn leave_cells(&self, passed: &mut Rgb, weights: &mut Weights, hero: usize) {
+    pub(crate) fn leave_cells(&self, passed: &mut Rgb, weights: &mut Weights, hero: usize) {
         let passed = std::mem::replace(passed, Rgb::ZERO);
         if passed.is_black() {
             return;

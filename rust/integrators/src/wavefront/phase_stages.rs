@@ -1,0 +1,184 @@
+//! The stages that take sixteen paths from scattering events in media to their next rays.
+
+use super::matte;
+use super::media::MediumScattering;
+use super::queues::{Flags, PathLanes};
+use super::worker::{WavefrontWorker, bits, own};
+use crate::dimensions::Dimensions;
+use crate::media::path_reuse::SecondVertex;
+use crate::roulette;
+use crate::widths::widened;
+use raywright_base::math::{LANES, PathRays, Ray, SingleLanes, Vec3};
+use raywright_base::sampling::SamplerLanes;
+use raywright_base::timing::{Part, timed};
+use raywright_optics::{BsdfSample, Rgb};
+use raywright_scene::{Footprint, ReceiverBlock};
+
+impl WavefrontWorker<'_> {
+    /// Takes all paths from scattering events in media to their next rays.
+    pub(super) fn leave_media(&mut self, numbers: &mut SamplerLanes, bounce: u32, samples: u32) {
+        let Some(scattered) = self.media.as_mut().map(|media| std::mem::take(&mut media.scattered)) else { return };
+        for (some, number) in scattered.chunks(LANES).zip((0..).step_by(LANES)) {
+            self.meet_medium(some);
+            let [firsts, seconds] = self.share_in_medium(some, bounce, samples);
+            self.gather_media(samples);
+            self.gather_waves();
+            if let Some(columns) = &self.samplers {
+                columns.gather(&self.block.sample.map(|sample| own(sample, samples)), numbers);
+            }
+            if !self.scene.lights().is_dark() {
+                timed(Part::Light, || self.ask_for_light_in_medium((some, number, seconds), numbers, bounce, samples));
+            }
+            if self.follows {
+                timed(Part::Continuation, || self.scatter_in_medium((some, firsts, seconds), numbers, bounce, samples));
+            }
+        }
+        if let Some(media) = &mut self.media {
+            media.scattered = scattered;
+        }
+    }
+
+    /// Stage: what is known of sixteen scattering events.
+    fn meet_medium(&mut self, some: &[MediumScattering]) {
+        let (queue, block) = (&self.paths[0], &mut *self.block);
+        let surfaces = &mut block.surfaces;
+        surfaces.count = some.len();
+        for lane in 0..LANES {
+            let at = &some[lane.min(some.len() - 1)];
+            surfaces.index[lane] = at.path;
+            surfaces.position.set(lane, at.position);
+            surfaces.origin.set(lane, at.position);
+            surfaces.normal.set(lane, Vec3::ZERO);
+            surfaces.primitive[lane] = Ray::NO_TRIANGLE;
+        }
+        block.gather(queue, self.extra);
+    }
+
+    /// Stage: light is drawn for sixteen scattering events, and its shadow rays are queued. At second vertices, each
+    /// path that takes a share of it weighs it by its own direction.
+    fn ask_for_light_in_medium(
+        &mut self,
+        (some, number, seconds): (&[MediumScattering], usize, u32),
+        numbers: &SamplerLanes,
+        bounce: u32,
+        samples: u32,
+    ) {
+        let (level, block) = (self.level, &mut *self.block);
+        let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
+        numbers.choice_and_pair(level, Dimensions::of(bounce, 0).light_choice(0), &mut choice, &mut u);
+        let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
+        let normal = &SingleLanes::ZERO;
+        let receivers = ReceiverBlock { surfaces: &block.surfaces, normal, waves: &block.spectral.waves };
+        lights.draw_block(level, geometry, &receivers, &choice, &u, &mut block.lights);
+        let (mut arriving, mut lit) = (SingleLanes::ZERO, 0u32);
+        for (lane, at) in some.iter().enumerate() {
+            let drawn = block.lights.pdf[lane];
+            if drawn <= 0.0 {
+                continue;
+            }
+            let direction = block.lights.direction.get(lane).as_dvec3();
+            let light = block.throughput.get(lane) * block.lights.weight.get(lane);
+            let (pdf, light) = if seconds >> lane & 1 == 1 {
+                (SecondVertex::PDF as f32, light)
+            } else {
+                let pdf = at.phase.pdf(at.before, direction) as f32;
+                (pdf, light * pdf)
+            };
+            let span = self.media.as_ref().and_then(|media| Some((media, media.spans.get(number + lane)?)));
+            let light = match span {
+                Some((media, span)) if drawn == f32::INFINITY => {
+                    let way = block.lights.t_max[lane] / PathRays::END;
+                    light * media.points.weight(span, at.position + direction * way) as f32
+                }
+                _ => light,
+            };
+            arriving.set(lane, light);
+            block.media.ratio[lane] = if self.follows { pdf / drawn } else { 0.0 };
+            lit |= u32::from(light.max_element() > 0.0) << lane;
+        }
+        block.media.of_shadows = block.media.here;
+        let found = block.sample;
+        for lane in (0..some.len()).filter(|lane| seconds >> lane & 1 == 1) {
+            let sharing = self.media.as_mut().and_then(|media| media.sharing.as_mut());
+            if let (Some(second), 1) = (sharing.and_then(|all| all.second(own(found[lane], samples))), lit >> lane & 1)
+            {
+                second.to_light = block.lights.direction.get(lane).as_dvec3();
+            }
+            block.sample[lane] += samples;
+        }
+        block.queue_shadows(level, lit, (&block.surfaces.origin, &arriving), &mut self.shadows);
+        block.sample = found;
+    }
+
+    /// Stage: sixteen paths go on in the directions of phase functions, unless roulette ends them.
+    fn scatter_in_medium(
+        &mut self,
+        (some, firsts, seconds): (&[MediumScattering], u32, u32),
+        numbers: &SamplerLanes,
+        bounce: u32,
+        samples: u32,
+    ) {
+        let plays = self.plays(bounce);
+        let (level, block) = (self.level, &mut *self.block);
+        let (mut one, mut u, mut chance) = ([0.0; LANES], [[0.0; LANES]; 2], [0.0; LANES]);
+        let dimensions = Dimensions::of(bounce, 0);
+        numbers.choice_and_pair(level, dimensions.scattering_choice(), &mut one, &mut u);
+        let (mut direction, mut pdf) = (SingleLanes::ZERO, [0.0; LANES]);
+        for (lane, at) in some.iter().enumerate() {
+            let next = at.phase.sample(at.before, [u[0][lane].into(), u[1][lane].into()]);
+            let is_second = seconds >> lane & 1 == 1;
+            let density = if is_second { SecondVertex::PDF } else { at.phase.pdf(at.before, next) };
+            let sharing = self.media.as_mut().and_then(|media| media.sharing.as_mut());
+            if let (Some(sharing), true) = (sharing, is_second)
+                && let Some(second) = sharing.second(own(block.sample[lane], samples))
+            {
+                second.onward = next;
+            }
+            direction.set(lane, next.as_vec3());
+            pdf[lane] = density as f32;
+            if self.extra.width {
+                let before = Footprint { width: block.bsdf.width[lane].into(), spread: block.bsdf.spread[lane].into() };
+                let after = widened(&before, before.width, 0.0, &BsdfSample::new(next, Rgb::ONE, density));
+                block.bsdf.spread[lane] = after.spread as f32;
+            }
+        }
+        if plays {
+            numbers.one(level, &[dimensions.roulette(); LANES], &mut chance);
+            let before = block.throughput;
+            if self.scene.surrounding().is_some() {
+                let chance = chance.map(|chance| chance as f32);
+                matte::play(level, &chance, &block.bsdf.scale, &mut block.throughput);
+            } else {
+                for lane in 0..some.len() {
+                    let throughput = block.throughput.get(lane);
+                    let all = Rgb::from_array(throughput.as_dvec3().to_array());
+                    let survival = roulette::survival_among(all, block.bsdf.scale[lane].into());
+                    let kept = if chance[lane] < survival { throughput / survival as f32 } else { Vec3::ZERO };
+                    block.throughput.set(lane, kept);
+                }
+            }
+            // Only the densities of sampling decide on the path up to its second vertex.
+            for lane in (0..some.len()).filter(|lane| firsts >> lane & 1 == 1) {
+                block.throughput.set(lane, before.get(lane));
+            }
+        }
+        let mut goes_on = [0; LANES];
+        matte::survive(level, &block.throughput, &pdf, &mut goes_on);
+        let paths = PathLanes {
+            origin: &block.surfaces.origin,
+            direction: &direction,
+            misses: &[[Ray::NO_TRIANGLE; 2]; LANES],
+            throughput: &block.throughput,
+            pdf: &pdf,
+            normal: &SingleLanes::ZERO,
+            sample: &block.sample,
+            scale: &block.bsdf.scale,
+            flags: &block.bsdf.flags.map(|flags| flags & !Flags::ASKED_EACH),
+            aimed: &block.bsdf.guided.aimed,
+            width: &block.bsdf.width,
+            spread: &block.bsdf.spread,
+            time: &block.time,
+        };
+        self.paths[1].push(level, bits(&goes_on, block.surfaces.count), &paths);
+    }
+}
