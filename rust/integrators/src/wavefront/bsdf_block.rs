@@ -12,7 +12,7 @@ use raywright_base::math::{DVec3, Hit, LANES, PathRays, SingleLanes, Vec3, Vecto
 use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 use raywright_optics::{Bsdf, BsdfSample, BsdfSampleLanes, Null, Rgb, RgbLanes};
-use raywright_scene::materials::BsdfLanes;
+use raywright_scene::materials::{BsdfLanes, BsdfMix};
 use raywright_scene::{Footprint, LightBlock, LookupContext, Scene, SurfaceBlock, SurfaceInteraction};
 use std::borrow::Cow;
 
@@ -21,6 +21,8 @@ pub(super) struct BsdfBlock<'a> {
     bsdf: BsdfLanes<'a>,
     drawn: BsdfSampleLanes,
     frames: ShadingFrames,
+    /// BSDFs by shape and side and by the index of refraction around.
+    surrounded: Vec<((u32, u32, f64), BsdfMix)>,
     /// The densities with which surfaces scatter into the directions of [`BsdfBlock::reflect`].
     pub pdf: [f64; LANES],
     /// Where light is asked for, and where each of few lights is.
@@ -109,6 +111,7 @@ impl<'a> BsdfBlock<'a> {
             bsdf: BsdfLanes::default(),
             drawn: BsdfSampleLanes::NONE,
             frames: ShadingFrames::new(are_flat),
+            surrounded: Vec::new(),
             pdf: [0.0; LANES],
             asks: [false; LANES],
             asks_each: [false; LANES],
@@ -153,6 +156,9 @@ impl<'a> BsdfBlock<'a> {
             };
             let bsdf = match plan.constant(surfaces.shape[lane], is_front) {
                 Some(bsdf) if width == 0.0 && outside == 1.0 => Cow::Borrowed(bsdf),
+                Some(_) if width == 0.0 && waves.is_none() => {
+                    Cow::Owned(self.surrounded(scene, (met, surfaces), lane, outside))
+                }
                 _ => {
                     let made = self.frames.replace(lane, |ray, hit, surface| {
                         SurfaceInteraction::new(scene, ray, hit, surface, LookupContext { width, waves }, outside)
@@ -180,6 +186,29 @@ impl<'a> BsdfBlock<'a> {
             self.guided.arrive(lane, at, (self.scale[lane], chance[lane]), throughput);
             self.asks[lane] &= !self.guided.ends[lane];
         }
+    }
+
+    /// The BSDF of a material that is the same everywhere, in surroundings of an index of refraction.
+    fn surrounded(
+        &mut self,
+        scene: &Scene,
+        (met, surfaces): ((&PathRays, &[Hit]), &SurfaceBlock),
+        lane: usize,
+        outside: f64,
+    ) -> BsdfMix {
+        /// There are more than these in no scene that is worth it.
+        const MOST: usize = 64;
+        let of = (surfaces.shape[lane], surfaces.is_front[lane], outside);
+        if let Some((_, bsdf)) = self.surrounded.iter().find(|(known, _)| *known == of) {
+            return bsdf.clone();
+        }
+        let (ray, hit) = scene.geometry().hit_of_lane(met, surfaces, lane);
+        let surface = scene.geometry().surface(&ray, &hit);
+        let bsdf = SurfaceInteraction::new(scene, &ray, &hit, surface, LookupContext::default(), outside).into_bsdf();
+        if self.surrounded.len() < MOST {
+            self.surrounded.push((of, bsdf.clone()));
+        }
+        bsdf
     }
 
     /// The reflectance of the surface of a lane if that is matte, its shading normal, and whether that was bent towards

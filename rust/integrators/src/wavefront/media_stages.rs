@@ -8,6 +8,7 @@ use super::waves::PathWaves;
 use super::worker::{WavefrontWorker, own};
 use crate::CameraSamples;
 use crate::dimensions::Dimensions;
+use crate::media::current_medium::Filled;
 use crate::media::equiangular::ScatteringSpan;
 use crate::media::path_numbers::{FurtherNumbers, depth};
 use crate::media::spectral_mis::Weights;
@@ -143,10 +144,13 @@ impl WavefrontWorker<'_> {
         flights.begin();
         media.paths.clear();
         media.further.clear();
+        let mut last: Option<(&MediumStack<Filled>, u32)> = None;
         for (i, stack) in some.zip(&stacks) {
             let mut sampler = samplers.get(i);
             media.further.push(FurtherNumbers::new(sampler.paired()));
-            let number = flights.stacks.number(stack);
+            let same = last.filter(|(before, _)| before.interiors() == stack.interiors());
+            let number = same.map_or_else(|| flights.stacks.number(stack), |(_, number)| number);
+            last = Some((stack, number));
             // The first wavelength is the hero: dispersion ends all but that. Of red, green and blue it is any.
             let hero = if self.waves.is_empty() { ((sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2) } else { 0 };
             media.paths.push(PathMedia::new(number, hero));
@@ -199,8 +203,11 @@ impl PathFlights<'_, '_> {
             for (to, sample) in which.iter_mut().zip(&self.queue.sample[some.clone()]) {
                 *to = own(*sample, self.samples);
             }
-            self.samplers.gather(&which, numbers);
-            numbers.one(level, &[Dimensions::of(self.bounce, 0).mask(); LANES], &mut chance);
+            // Nested glass alone scatters nothing on the way.
+            if self.scene.plan().needs().media {
+                self.samplers.gather(&which, numbers);
+                numbers.one(level, &[Dimensions::of(self.bounce, 0).mask(); LANES], &mut chance);
+            }
             for (lane, i) in some.enumerate() {
                 let PathMedia { media, drawn, .. } = self.media.paths[which[lane] as usize];
                 let [r, g, b] = self.queue.throughput.each_ref().map(|column| f64::from(column[i]));

@@ -177,8 +177,8 @@ impl<'a> WavefrontWorker<'a> {
     ) -> Self {
         let (scene, level) = (job.scene, Level::current().unwrap_or(Level::Scalar));
         let needs = scene.plan().needs();
-        let are_flat =
-            scene.plan().is_constant() && !(needs.smooth || needs.instances || needs.points.width || needs.nested);
+        let vary = needs.smooth || needs.instances || needs.points.width || needs.nested && needs.waves;
+        let are_flat = scene.plan().is_constant() && !vary;
         let has_kinds = needs.scattering || guide.is_some() || !are_flat;
         let normal = scene.lights().ask_for_normals();
         // A ray that passes a mask may come to the same shape again.
