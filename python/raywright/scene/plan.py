@@ -34,8 +34,8 @@ class Plan:
     Attributes
     ----------
     kernel : str
-        Kernel that traces paths: ``"wavefront"`` (stages in float32), ``"general"`` (nested
-        dielectrics, wavelengths) or ``"media"``.
+        Kernel that traces paths: ``"wavefront"`` (stages in float32), or ``"general"`` where shading normals
+        are used as given.
     rows : tuple of PlanRow
         Every feature, whether this scene has it, and the consequence.
 

@@ -72,6 +72,13 @@ impl PathMedia {
     }
 }
 
+impl PathMedia {
+    /// The path has come to somewhere in media, with these relative densities.
+    pub fn come(&mut self, media: u32, drawn: Rgb) {
+        (self.media, self.drawn) = (media, drawn);
+    }
+}
+
 impl<'a> Media<'a> {
     /// Begins with the flights of so many paths.
     pub fn begin(&mut self, paths: usize) {

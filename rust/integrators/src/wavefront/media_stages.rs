@@ -42,7 +42,7 @@ impl PathFlights<'_, '_> {
     fn end_within(&mut self, flight: &Flight, ray: &Ray) {
         let (path, place) = (flight.place as usize, own(flight.sample, self.samples) as usize);
         (self.media.is_within[path], self.primitives[path]) = (true, Ray::NO_TRIANGLE);
-        self.queue.arrive(flight, ray, &mut self.media.paths[place]);
+        self.media.paths[place].come(flight.media, self.queue.arrive(path, ray.origin, &flight.weights));
     }
 }
 
@@ -85,8 +85,9 @@ impl Traveller for PathFlights<'_, '_> {
     }
 
     fn leave(&mut self, flight: &mut Flight, _: &MediumStacks<'_>, ray: &Ray) {
-        self.primitives[flight.place as usize] = Ray::NO_TRIANGLE;
-        self.queue.arrive(flight, ray, &mut self.media.paths[own(flight.sample, self.samples) as usize]);
+        let (path, place) = (flight.place as usize, own(flight.sample, self.samples) as usize);
+        self.primitives[path] = Ray::NO_TRIANGLE;
+        self.media.paths[place].come(flight.media, self.queue.arrive(path, ray.origin, &flight.weights));
     }
 
     fn arrive(&mut self, flight: &mut Flight, flights: &Flights<'_>, at: &Stop<'_>) -> Passage {
@@ -118,7 +119,7 @@ impl Traveller for PathFlights<'_, '_> {
         let inside =
             || if flight.passed > 0 { (within - start).length() / (at.position - start).length() } else { 1.0 };
         path.shares = shares.then(inside);
-        self.queue.arrive(flight, at.ray, path);
+        path.come(flight.media, self.queue.arrive(i, at.ray.origin, &flight.weights));
         Passage::Ends
     }
 

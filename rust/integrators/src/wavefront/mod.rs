@@ -16,6 +16,7 @@ mod matte;
 mod matte_stages;
 mod media;
 mod media_sharing;
+mod media_sharing_stages;
 mod media_stages;
 mod medium_stacks;
 mod phase_stages;
@@ -23,6 +24,7 @@ mod queues;
 mod shading_frames;
 mod transmittance_stages;
 mod waves;
+mod waves_stages;
 mod worker;
 
 use super::{Guide, Job, Session, Worker};

@@ -1,9 +1,9 @@
 //! Paths and shadow rays that wait for their next stage.
 
-use super::flights::Flight;
-use super::media::PathMedia;
-use raywright_base::math::{DVec3, LANES, PathRays, Ray, SingleLanes, VectorLanes};
+use crate::media::spectral_mis::Weights;
+use raywright_base::math::{DVec3, LANES, PathRays, SingleLanes, VectorLanes};
 use raywright_base::simd::{Column, Level, pack};
+use raywright_optics::Rgb;
 
 /// Paths on their way, each number in a column.
 pub(super) struct PathQueue {
@@ -199,20 +199,18 @@ impl PathQueue {
         }
     }
 
-    /// Takes over what a path has come to by its flight. Its density becomes that of the flight too, over what it is
-    /// where light is drawn in place of the flight.
+    /// A path has come to the end of a ray from an origin, with these weights, by its flight. Returns the density of
+    /// the path for each color, relative to their mean. The density of its direction becomes that of the flight too,
+    /// over what it is where light is drawn in place of the flight.
     #[inline]
-    pub fn arrive(&mut self, flight: &Flight, ray: &Ray, path: &mut PathMedia) {
-        for axis in 0..3 {
-            self.rays.origin[axis][flight.place as usize] = ray.origin[axis];
-        }
-        let (i, weights) = (flight.place as usize, &flight.weights);
+    pub fn arrive(&mut self, path: usize, origin: DVec3, weights: &Weights) -> Rgb {
         let (drawn, throughput) = (weights.drawn.mean(), weights.throughput());
-        for channel in 0..3 {
-            self.throughput[channel][i] = throughput[channel] as f32;
+        for axis in 0..3 {
+            self.rays.origin[axis][path] = origin[axis];
+            self.throughput[axis][path] = throughput[axis] as f32;
         }
-        self.pdf[i] *= (drawn / weights.asked.mean()) as f32;
-        (path.media, path.drawn) = (flight.media, weights.drawn / drawn);
+        self.pdf[path] *= (drawn / weights.asked.mean()) as f32;
+        weights.drawn / drawn
     }
 }
 

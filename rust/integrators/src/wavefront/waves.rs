@@ -1,11 +1,9 @@
-//! Paths that carry wavelengths in place of red, green and blue.
+//! Wavelengths of paths in place of red, green and blue.
 
-use super::queues::Flags;
-use super::worker::{Block, WavefrontWorker};
 use crate::CameraSamples;
 use crate::dimensions::Dimensions;
 use crate::terminate_wavelengths::Parting;
-use raywright_base::math::{LANES, Vec3};
+use raywright_base::math::LANES;
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Dispersive, Rgb};
 use std::ops::Range;
@@ -50,77 +48,5 @@ pub(super) fn draw(samples: &CameraSamples, some: Range<usize>, waves: &mut Vec<
 pub(super) fn see(waves: &[PathWaves], radiance: &mut [Rgb]) {
     for (light, waves) in radiance.iter_mut().zip(waves) {
         *light = waves.first.seen(*light);
-    }
-}
-
-impl WavefrontWorker<'_> {
-    /// Stage: at which wavelengths sixteen paths are.
-    pub(super) fn gather_waves(&mut self) {
-        if self.waves.is_empty() {
-            return;
-        }
-        let Block { sample, spectral, surfaces, media: of, .. } = &mut *self.block;
-        for lane in 0..LANES {
-            spectral.waves[lane] = Some(self.waves[sample[lane] as usize].now);
-            if let Some(flights) = &self.flights {
-                let around = if surfaces.is_front[lane] != 0 { of.here[lane] } else { of.through[lane] };
-                spectral.around[lane] = flights.stacks.get(around).media.dispersion();
-            }
-        }
-    }
-
-    /// Stage: at surfaces that refract each wavelength in its own direction, paths keep the hero alone.
-    pub(super) fn end_wavelengths(&mut self) {
-        for lane in 0..self.block.surfaces.count {
-            if self.block.spectral.ends[lane] {
-                let ended = self.end_all_but_hero(lane, self.block.throughput.get(lane));
-                self.block.throughput.set(lane, ended);
-            }
-        }
-    }
-
-    /// Stage: refraction keeps the hero alone, and a reflection weighs all wavelengths by their own reflectances.
-    pub(super) fn part_wavelengths(&mut self) {
-        let count = if self.waves.is_empty() { 0 } else { self.block.surfaces.count };
-        for lane in 0..count {
-            let Some(parting) = self.block.spectral.parting[lane] else { continue };
-            let throughput = self.block.next.throughput.get(lane);
-            let parted = if self.block.bsdf.is_through(lane) {
-                self.end_all_but_hero(lane, throughput)
-            } else if self.block.bsdf.flags[lane] & Flags::SINGLE == 0 {
-                self.mirror(lane, parting.mirrored(self.block.bsdf.wo(lane)), throughput)
-            } else {
-                throughput
-            };
-            self.block.next.throughput.set(lane, parted);
-            self.block.next.flags[lane] |= self.block.bsdf.flags[lane] & Flags::SINGLE;
-        }
-    }
-
-    /// The throughput of the path of a lane that only the hero goes on with: no other wavelength could have sampled the
-    /// rest of the path.
-    fn end_all_but_hero(&mut self, lane: usize, throughput: Vec3) -> Vec3 {
-        let block = &mut *self.block;
-        let sample = block.sample[lane] as usize;
-        if block.bsdf.flags[lane] & Flags::SINGLE != 0 {
-            return throughput;
-        }
-        block.bsdf.flags[lane] |= Flags::SINGLE;
-        self.waves[sample].now = self.waves[sample].now.alone();
-        let ended = Waves::ended(Rgb::from_array(throughput.as_dvec3().to_array()));
-        let drawn =
-            self.media.as_mut().map_or(Rgb::ONE, |media| std::mem::replace(&mut media.paths[sample].drawn, Rgb::ONE));
-        (ended / drawn[0]).as_vec3()
-    }
-
-    /// The throughput of the path of a lane after the hero was reflected by chance, which the others would have been by
-    /// other chances.
-    fn mirror(&mut self, lane: usize, by: Rgb, throughput: Vec3) -> Vec3 {
-        let mirrored = throughput * by.as_vec3();
-        let Some(media) = &mut self.media else { return mirrored };
-        let drawn = &mut media.paths[self.block.sample[lane] as usize].drawn;
-        let mean = (*drawn * by).mean();
-        *drawn = *drawn * by / mean;
-        mirrored / mean as f32
     }
 }
