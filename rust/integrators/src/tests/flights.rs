@@ -11,7 +11,7 @@ use raywright_optics::{Dispersion, Dispersive, Phase, Rgb};
 use raywright_scene::fixtures::{rectangle, scene, shape};
 use raywright_scene::materials::{BoundaryMaterial, DielectricMaterial, Interior};
 use raywright_scene::media::{Homogeneous, Medium};
-use raywright_scene::{ConstantEnvironment, Light, Material, Scene, SceneDescription, Shape};
+use raywright_scene::{ConstantEnvironment, Light, Material, PointLight, Scene, SceneDescription, Shape};
 use raywright_shapes::Sphere;
 use std::sync::Arc;
 
@@ -85,6 +85,14 @@ fn the_camera_may_be_within_and_media_may_overlap_and_touch() {
     assert_same(&of(vec![floor(), lamp(), inside, crossing], vec![]));
     let fog = of(vec![floor(), lamp()], vec![]).surrounded_by(Some(one));
     assert_same(&fog);
+}
+
+#[test]
+fn points_light_a_fog_along_rays() {
+    let point = || Arc::new(PointLight { position: DVec3::new(0.5, 1.0, 0.0), intensity: Rgb::new(3.0, 2.0, 1.0) });
+    let medium = haze([0.3, 0.5, 0.2], 0.0);
+    assert_same(&of(vec![floor(), smoke(DVec3::new(0.0, 1.2, 0.0), 1.1, &medium)], vec![point()]));
+    assert_same(&of(vec![floor()], vec![point(), sky()]).surrounded_by(Some(medium)));
 }
 
 #[test]

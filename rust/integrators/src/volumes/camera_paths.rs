@@ -8,6 +8,7 @@ use super::scattering::Scattering;
 use super::{Onwards, VolumetricPath};
 use crate::dimensions::Dimensions;
 use crate::media::current_medium::Filled;
+use crate::media::equiangular::{PointLights, ScatteringSpan};
 use crate::media::path_numbers::{PathNumbers, depth};
 use crate::media::ray_tracer::TraceRays;
 use crate::mis_weight::power_heuristic;
@@ -34,6 +35,8 @@ pub(super) struct Walker<'a, A> {
     pub(super) scene: &'a Scene,
     /// Footprint of camera rays, if materials need it.
     footprint: Option<Footprint>,
+    /// Point lights.
+    pub(super) points: &'a PointLights<'a>,
     /// Precomputed light at scattering events, if any.
     pub(super) known: Option<&'a dyn KnownLight>,
     /// Ray intersection.
@@ -49,10 +52,11 @@ impl<'a> Walkers<'a> {
     pub fn new(
         settings: VolumetricPath,
         (scene, footprint): (&'a Scene, Footprint),
+        points: &'a PointLights<'a>,
         known: Option<&'a dyn KnownLight>,
     ) -> Self {
         let footprint = scene.plan().needs().points.width.then_some(footprint);
-        let walker = Walker { settings, scene, footprint, known, asks: () };
+        let walker = Walker { settings, scene, footprint, points, known, asks: () };
         Self { walker }
     }
 }
@@ -100,9 +104,16 @@ impl<'a, A: TraceRays> Walker<'a, A> {
                         light += self.known_among(&path, &here, number);
                         false
                     }
-                    TraversalEnd::Medium { here, collision } => {
+                    TraversalEnd::Medium { here, collision, span } => {
                         path.come_to(collision.t, 0.0);
-                        self.scatter(&mut path, &here, hero, &mut numbers, cancel, &mut light).await
+                        let part = collision.density.map(|density| ScatteringSpan {
+                            ray: path.ray,
+                            span,
+                            t: collision.t,
+                            density,
+                        });
+                        let part = part.filter(|_| self.is_lit(&path));
+                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light).await
                     }
                     TraversalEnd::Surface { hit, outside, through } => {
                         let (at, of) = ((hit, outside, through), (hero, number));
@@ -136,14 +147,22 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
         let mut going = RaySegmentState { ray: path.ray, weights: path.weights, media: path.media };
+        let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
         let course = self.course(path.waves);
-        let place = course.advance(&mut going, (hero, way), numbers, cancel, light).await;
+        let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
+        drop(lit);
         (path.ray, path.weights, path.media) = (going.ray, going.weights, going.media);
         if let Some(TraversalEnd::Outside) = place {
             *light += path.weights.throughput() * self.light_from_outside(path);
             return None;
         }
         place
+    }
+
+    /// Return whether point lights are sampled along the path through homogeneous media.
+    fn is_lit(&self, path: &PathState) -> bool {
+        let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
+        may_scatter && !self.points.is_empty() && self.known.is_none()
     }
 
     /// Return the weighted light of infinite lights along a path's ray.
@@ -178,6 +197,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         &self,
         path: &mut PathState,
         here: &Scattering,
+        part: Option<ScatteringSpan>,
         hero: usize,
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
@@ -188,7 +208,14 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         }
         let media = path.media;
         let asked = self.direct_light(here, path, |_| media, (hero, ONCE), numbers, cancel).await;
-        *light += asked.unwrap_or(Rgb::ZERO);
+        if let Some((drawn, arrives)) = asked {
+            let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
+            let weight = match (part, place) {
+                (Some(part), Some(place)) => self.points.weight(&part, place),
+                _ => 1.0,
+            };
+            *light += arrives * weight;
+        }
         let u = numbers.ray.direction();
         let Some(next) = here.sample(&mut || 0.0, numbers.two(u)) else { return false };
         let chance = numbers.ray.roulette();
@@ -246,8 +273,9 @@ impl<'a, A: TraceRays> Walker<'a, A> {
             let often = if path.bounce == 0 { self.settings.light_samples } else { 1 };
             for number in 0..often {
                 let draw = (hero, (number, often));
-                let arrives = self.direct_light(&here, path, side, draw, numbers, cancel).await;
-                *light += arrives.unwrap_or(Rgb::ZERO);
+                if let Some((_, arrives)) = self.direct_light(&here, path, side, draw, numbers, cancel).await {
+                    *light += arrives;
+                }
             }
         }
         if !self.follows_all() {
@@ -378,7 +406,7 @@ impl Walkers<'_> {
     /// Trace the paths of some samples to their ends.
     fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
         assert_eq!(samples.len(), radiance.len());
-        let Walker { settings, scene, footprint, known, .. } = self.walker;
+        let Walker { settings, scene, footprint, points, known, .. } = self.walker;
         let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
         let mut media = Vec::new();
         MediumStack::at(scene, &rays, &mut media);
@@ -386,7 +414,7 @@ impl Walkers<'_> {
         let radiance = Cell::from_mut(radiance).as_slice_of_cells();
         let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance));
         together(scene, &lanes, |lane: &Lane| {
-            let (walker, to_do) = (Walker { settings, scene, footprint, known, asks: lane }, &to_do);
+            let (walker, to_do) = (Walker { settings, scene, footprint, points, known, asks: lane }, &to_do);
             async move {
                 let mut waiting = Vec::new();
                 while !cancel.is_raised() {

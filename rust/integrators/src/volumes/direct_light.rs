@@ -26,14 +26,15 @@ impl<A: TraceRays> Walker<'_, A> {
         (hero, draw): (usize, (u32, u32)),
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
-    ) -> Option<Rgb> {
+    ) -> Option<(LightSample, Rgb)> {
         let choice = numbers.ray.light_choice(draw.0);
         let (choice, u) = (share(numbers.one(choice), draw), numbers.two(choice + 1));
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let receiver = LightSampleContext { waves: path.waves, ..here.light_context() };
         // MIS treats all samples as one with the density multiplied by their number.
         let light = lights.sample(geometry, &receiver, choice, u)?.chosen(f64::from(draw.1));
-        self.arriving(here, path, &light, media(&light), hero, numbers, cancel).await
+        let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel).await?;
+        Some((light, arrives))
     }
 
     /// Return the light of a sample that arrives at a vertex, weighted by MIS with BSDF or phase function sampling.

@@ -1,6 +1,6 @@
 //! Tracing of light paths through media, one path at a time.
 
-use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
 use super::vertex::{Point, Vertex};
 use crate::light_paths::{Arrived, Dimensions, EmissionDimensions, Limits, Onward, Times};
 use crate::media::current_medium::Filled;
@@ -175,8 +175,8 @@ impl<'a> MediaLightWalk<'a> {
             let before = path.flux();
             let way = depth(numbers.one(dimensions.mask()));
             let (hero, mut glow) = (path.hero, Rgb::ZERO);
-            let (course, going) = (self.course(&path), &mut path.going);
-            let place = at_once(course.advance(going, (hero, way), &mut numbers, cancel, &mut glow));
+            let (course, lit, going) = (self.course(&path), None::<&Nobody>, &mut path.going);
+            let place = at_once(course.advance(going, (hero, way), &mut numbers, cancel, &mut glow, lit));
             let taken = if place.is_some() { before - path.flux() } else { before };
             visitor.absorb(taken);
             let RaySegmentState { ray, media, .. } = path.going;

@@ -11,9 +11,10 @@ use crate::nesting::MediumStack;
 use crate::shadows::opacity;
 use raywright_base::math::{Hit, Ray};
 use raywright_base::workers::Cancel;
-use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
+use raywright_optics::{Phase, Rgb};
 use raywright_scene::Scene;
+use raywright_scene::media::Coefficients;
 
 /// Constant parameters of a traversal.
 #[derive(Clone, Copy)]
@@ -40,12 +41,33 @@ pub(crate) struct RaySegmentState {
 
 /// The end of a traversal.
 pub(crate) enum TraversalEnd {
-    /// A scattering event.
-    Medium { here: Scattering, collision: Collision },
+    /// A scattering event, and the span of the ray in its medium.
+    Medium { here: Scattering, collision: Collision, span: [f64; 2] },
     /// A surface.
     Surface { hit: Hit, outside: f64, through: MediumStack<Filled> },
     /// Outside the scene.
     Outside,
+}
+
+/// Adds light that reaches a path along its ray.
+pub(super) trait OnTheWay {
+    /// Return the light on a span of the ray in a homogeneous scattering medium.
+    async fn add(
+        &self,
+        now: &RaySegmentState,
+        span: [f64; 2],
+        here: (&Coefficients, Phase),
+        numbers: &mut PathNumbers<'_>,
+    ) -> Rgb;
+}
+
+/// Adds no light.
+pub(super) struct Nobody;
+
+impl OnTheWay for Nobody {
+    async fn add(&self, _: &RaySegmentState, _: [f64; 2], _: (&Coefficients, Phase), _: &mut PathNumbers<'_>) -> Rgb {
+        Rgb::ZERO
+    }
 }
 
 impl<'a> MediumTraversal<'a> {
@@ -66,6 +88,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
+        on_the_way: Option<&impl OnTheWay>,
     ) -> Option<TraversalEnd> {
         let mut start = path.ray.t_min;
         while !cancel.is_raised() {
@@ -78,7 +101,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
             });
             let even = even.filter(|here| !here.scattering.is_black());
             let mut asked = path.ray;
-            if let Some(here) = even.filter(|here| here.emission.is_black()) {
+            if let Some(here) = even.filter(|here| here.emission.is_black() && on_the_way.is_none()) {
                 // Intersections beyond the scattering event are not needed.
                 let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
                 asked.t_max = reach.next_up().min(asked.t_max);
@@ -87,12 +110,15 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
             let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
             if let Some((medium, within)) = around {
                 let span = [start, end];
+                if let (Some(here), Some(lit)) = (even, on_the_way) {
+                    *light += lit.add(path, span, (&here, medium.phase()), numbers).await;
+                }
                 let flight = MediumSegment { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
                 let weights = &mut path.weights;
                 if let Some(collision) = flight.fly(weights, (hero, &mut way), &mut numbers.more, cancel, light) {
                     let (position, before) = (path.ray.at(collision.t), path.ray.direction);
                     let here = Scattering { position, before, phase: medium.phase() };
-                    return Some(TraversalEnd::Medium { here, collision });
+                    return Some(TraversalEnd::Medium { here, collision, span });
                 }
                 if path.weights.carried.is_black() {
                     return None;

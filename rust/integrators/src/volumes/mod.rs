@@ -8,6 +8,7 @@
 mod batch_executor;
 mod camera_paths;
 mod direct_light;
+mod equiangular;
 mod final_gather;
 mod light_partials;
 mod light_walk;
@@ -32,6 +33,7 @@ pub(super) use to_camera::{Counting, MediaLightPaths};
 pub(super) use vertex::{Point, Vertex};
 pub(super) use volumetric_bdpt::BothEnds;
 
+use super::media::equiangular::PointLights;
 use super::transport::Gather;
 use super::{Job, Session, Worker};
 use camera_paths::Walkers;
@@ -103,7 +105,8 @@ impl VolumetricPath {
     }
 
     fn among<'a>(self, job: Job<'a>, known: Option<Arc<dyn KnownLight + 'a>>) -> Box<dyn Session + 'a> {
-        Box::new(Among { settings: self, scene: job.scene, footprint: job.footprint, known })
+        let points = PointLights::of(job.scene);
+        Box::new(Among { settings: self, scene: job.scene, footprint: job.footprint, points, known })
     }
 }
 
@@ -113,12 +116,14 @@ struct Among<'a> {
     scene: &'a Scene,
     /// Footprint of camera rays.
     footprint: Footprint,
+    /// Point lights.
+    points: PointLights<'a>,
     /// Precomputed light at scattering events.
     known: Option<Arc<dyn KnownLight + 'a>>,
 }
 
 impl Session for Among<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Walkers::new(self.settings, (self.scene, self.footprint), self.known.as_deref()))
+        Box::new(Walkers::new(self.settings, (self.scene, self.footprint), &self.points, self.known.as_deref()))
     }
 }

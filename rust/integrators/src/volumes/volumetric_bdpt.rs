@@ -5,7 +5,7 @@
 
 use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
 use super::vertex::{Point, Vertex};
 use crate::dimensions::Dimensions;
 use crate::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
@@ -216,7 +216,8 @@ impl<'a> BothEnds<'a> {
         let u = sample.numbers.ray.mask();
         let way = (sample.hero, depth(sample.numbers.one(u)));
         let course = self.course(path.waves_with(false));
-        let place = at_once(course.advance(&mut path.going, way, sample.numbers, sample.cancel, light));
+        let lit = None::<&Nobody>;
+        let place = at_once(course.advance(&mut path.going, way, sample.numbers, sample.cancel, light, lit));
         let RaySegmentState { ray, media, .. } = path.going;
         let mut parting = None;
         let at = match place {
