@@ -23,7 +23,7 @@ pub fn directional_albedo(scatter: &impl Bsdf, eta: f64, wo: DVec3, width: f64, 
     if scatter.transmits() {
         // Facets seen edge-on from both sides refract to the last of these elevations.
         let mut lobes = [refracted, straight, elevation(up.z / eta)];
-        lobes.sort_by(f64::total_cmp);
+        lobes.sort_unstable_by(f64::total_cmp);
         sum += side(scatter, wo, -1.0, &lobes, bent, precision) * eta * eta;
     }
     sum

@@ -116,7 +116,7 @@ mod tests {
                 errors.push(error(part));
             }
         }
-        errors.sort_by(|a, b| b.total_cmp(a));
+        errors.sort_unstable_by(|a, b| b.total_cmp(a));
         let [mean, without] = [1000.0 / 16.0 + 0.1, 0.1].map(Rgb::splat);
         for (pixels, probability) in [(1, 0.025), (1, 0.005), (4, 0.025), (20, 0.025)] {
             let mut jumps = Jumps::default();

@@ -93,7 +93,7 @@ mod tests {
         #[test]
         fn keeps_the_largest_in_order(values in prop::collection::vec(0.0..1.0f64, 0..50), split in 0usize..50) {
             let mut sorted = values.clone();
-            sorted.sort_by(|a, b| b.total_cmp(a));
+            sorted.sort_unstable_by(|a, b| b.total_cmp(a));
             sorted.resize(FEW, 0.0);
             prop_assert_eq!(&largest(&values).0[..], &sorted[..]);
             let (left, right) = values.split_at(split.min(values.len()));

@@ -99,7 +99,7 @@ fn of_pixel(cells: &[(u32, Cover)]) -> Cover {
             add(&mut cover, shape, sum / f64::from(*count) / counted);
         }
     }
-    cover.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    cover.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     cover
 }
 

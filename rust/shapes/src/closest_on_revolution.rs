@@ -189,7 +189,7 @@ fn rising_zeros([a, b, c, d]: [f64; 4]) -> Vec<f64> {
     let root = (c * c - 3.0 * b * d).max(0.0).sqrt();
     let sum = -(c + root.copysign(c));
     let mut turns = [sum / (3.0 * d), b / sum];
-    turns.sort_by(f64::total_cmp);
+    turns.sort_unstable_by(f64::total_cmp);
     ends.extend(turns.into_iter().filter(|q| *q > 0.0 && *q < 1.0));
     ends.push(1.0);
     let mut found = Vec::new();

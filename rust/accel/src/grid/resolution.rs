@@ -48,7 +48,7 @@ impl Resolution {
 /// The side length of cubes, given the number that fill a box. An axis thinner than a cube has one cell, and the other
 /// axes share the cells.
 fn cell_width(mut extent: [f32; 3], cells: f32) -> f32 {
-    extent.sort_by(f32::total_cmp);
+    extent.sort_unstable_by(f32::total_cmp);
     let [a, b, c] = extent.map(f64::from);
     let cells = f64::from(cells);
     let (space, plane) = ((a * b * c / cells).cbrt(), (b * c / cells).sqrt());

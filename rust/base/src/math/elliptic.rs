@@ -9,7 +9,7 @@ pub fn ellipsoid_area(products: [f64; 3]) -> f64 {
         return largest;
     }
     let mut squares = products.map(|p| (p / largest).powi(2));
-    squares.sort_by(f64::total_cmp);
+    squares.sort_unstable_by(f64::total_cmp);
     4.0 * std::f64::consts::PI * largest * integral_g(squares)
 }
 

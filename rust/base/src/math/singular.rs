@@ -40,7 +40,7 @@ mod tests {
         let axes =
             at_right_angles([DVec3::new(c, 1e-5 * s, 0.0), DVec3::new(-s, 1e-5 * c, 0.0), DVec3::new(0.0, 0.0, 4.0)]);
         let mut lengths = axes.map(DVec3::length);
-        lengths.sort_by(f64::total_cmp);
+        lengths.sort_unstable_by(f64::total_cmp);
         for (x, y) in lengths.iter().zip([1e-5, 1.0, 4.0]) {
             assert!((x / y - 1.0).abs() < 1e-14, "{x} {y}");
         }

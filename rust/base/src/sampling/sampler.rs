@@ -167,7 +167,7 @@ mod tests {
             all.push(value(0, 0, 0, 1 << bit));
         }
         let count = all.len();
-        all.sort_by(f64::total_cmp);
+        all.sort_unstable_by(f64::total_cmp);
         all.dedup();
         assert_eq!(all.len(), count);
     }

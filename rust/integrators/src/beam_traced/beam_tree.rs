@@ -86,7 +86,7 @@ impl BeamTree {
         let mut seen: Vec<VisibleFace> =
             parallel::map_chunks(geometry.count(), TOGETHER, see).into_iter().flatten().collect();
         // Near faces hide most.
-        seen.sort_by(|a, b| b.nearest.total_cmp(&a.nearest).then(a.primitive.cmp(&b.primitive)));
+        seen.sort_unstable_by(|a, b| b.nearest.total_cmp(&a.nearest).then(a.primitive.cmp(&b.primitive)));
         let one = |which: usize| {
             let mut found = FaceBeams::default();
             if cancel.is_raised() {

@@ -227,7 +227,7 @@ impl<'a> Flights<'a> {
     }
 
     /// Takes all flights one step: up to what each hits first. Those that pass it are the next.
-    pub fn step(&mut self, scene: &Scene, level: Level, traveller: &mut impl Traveller) {
+    pub fn step(&mut self, scene: &Scene, level: Level, traveller: &mut dyn Traveller) {
         self.find_closest(scene, level);
         self.next.clear();
         for i in 0..self.now.rays.len {
@@ -250,7 +250,7 @@ impl<'a> Flights<'a> {
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
-    fn step_lane(&mut self, scene: &Scene, traveller: &mut impl Traveller, lane: usize) {
+    fn step_lane(&mut self, scene: &Scene, traveller: &mut dyn Traveller, lane: usize) {
         let i = self.surfaces.index[lane] as usize;
         let (mut flight, ray) = (self.now.all[i], self.now.rays.get(i));
         let position = self.surfaces.position.get(lane);
@@ -267,7 +267,7 @@ impl<'a> Flights<'a> {
         self.go_on(traveller, flight, (passage, &at), self.surfaces.origin_behind(lane));
     }
 
-    fn step_unclear(&mut self, scene: &Scene, traveller: &mut impl Traveller) {
+    fn step_unclear(&mut self, scene: &Scene, traveller: &mut dyn Traveller) {
         if self.unclear.is_empty() {
             return;
         }
@@ -309,7 +309,7 @@ impl<'a> Flights<'a> {
     /// Queues the ray of a flight that passes a hit, from a point behind it.
     fn go_on(
         &mut self,
-        traveller: &impl Traveller,
+        traveller: &dyn Traveller,
         mut flight: Flight,
         (passage, at): (Passage, &Stop<'_>),
         origin: DVec3,

@@ -48,7 +48,7 @@ pub fn covered(segments: &[[DVec2; 2]], rule: Rule) -> f64 {
         .collect();
     rising.sort_by(|a, b| a.low.y.total_cmp(&b.low.y));
     let mut heights: Vec<f64> = rising.iter().flat_map(|r| [r.low.y, r.high.y]).collect();
-    heights.sort_by(f64::total_cmp);
+    heights.sort_unstable_by(f64::total_cmp);
     heights.dedup();
     let (mut open, mut next, mut area) = (Vec::<Rising>::new(), 0, 0.0);
     for ends in heights.windows(2) {
@@ -79,7 +79,7 @@ fn slab(open: &[Rising], bottom: f64, top: f64, rule: Rule) -> f64 {
             }
         }
     }
-    cuts.sort_by(f64::total_cmp);
+    cuts.sort_unstable_by(f64::total_cmp);
     let parts = cuts.windows(2).map(|ends| {
         let &[from, to] = ends else { return 0.0 };
         let middle = |span: &(f64, f64, i32)| span.0 + (span.1 - span.0) * 0.5 * (from + to);

@@ -43,7 +43,7 @@ pub fn partitions(edges: &EdgeAdjacency, area: impl Fn(u32) -> f64) -> Vec<u32> 
         faces.push(face);
     }
     let mut patches: Vec<(f64, Vec<u32>)> = patches.into_values().collect();
-    patches.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+    patches.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
     let mut walls = Vec::new();
     for (_, faces) in patches {
         let rim = || faces.iter().flat_map(|&face| edges.of_face(face)).filter(is_shared);
