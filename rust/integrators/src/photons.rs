@@ -75,7 +75,7 @@ pub fn photons(
         } else {
             LightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
         }
-        seen.found.photons.sort_by_key(|photon| (photon.path, photon.bounces));
+        seen.found.photons.sort_unstable_by_key(|photon| (photon.path, photon.bounces));
         seen.found
     };
     let chunks: Vec<Photons> = parallel::map(count.div_ceil(TOGETHER) as usize, |chunk| follow(chunk as u32));

@@ -81,7 +81,7 @@ impl<'a> Coverage<'a> {
         let mut balls: Vec<_> = self.balls.iter().filter(|(p, ball)| counts(*p) && is_beyond(ball, counted)).collect();
         let distance = |ball: &Ball| (ball.center - cone.apex).length() - ball.radius;
         balls.retain(|(_, ball)| distance(ball) <= cone.most);
-        balls.sort_by(|a, b| distance(&b.1).total_cmp(&distance(&a.1)));
+        balls.sort_unstable_by(|a, b| distance(&b.1).total_cmp(&distance(&a.1)));
         let touches = self.scene.touched(&[Some(*cone)]);
         let mut tell = |found: Option<(f64, DVec3)>, primitive: u32| {
             if let Some((share, direction)) = found {

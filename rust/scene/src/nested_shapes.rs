@@ -93,7 +93,7 @@ fn share(some: &[Extent], others: &[Extent]) -> bool {
     if others.is_empty() && all.len() < 2 {
         return false;
     }
-    all.sort_by(|(a, _), (b, _)| a[0].x.total_cmp(&b[0].x));
+    all.sort_unstable_by(|(a, _), (b, _)| a[0].x.total_cmp(&b[0].x));
     all.iter().enumerate().any(|(i, (a, is_other))| {
         let near = all[i + 1..].iter().take_while(|(b, _)| b[0].x <= a[1].x);
         let mut counted = near.filter(|(_, other)| if others.is_empty() { true } else { other != is_other });

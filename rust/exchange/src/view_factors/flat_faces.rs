@@ -186,7 +186,7 @@ fn of_shapes(scene: &Scene) -> Vec<SharedPlane> {
             found.push(SharedPlane { faces, parts, area, middle, is_same, room });
         }
     }
-    found.sort_by_key(|shared| shared.faces);
+    found.sort_unstable_by_key(|shared| shared.faces);
     found
 }
 

@@ -172,7 +172,7 @@ impl Leaf {
         let brighter = if usual > 0.0 { (light / area / usual).min(BRIGHTEST) } else { BRIGHTEST };
         let all = Lobe::around(near, size);
         let of_all = if usual > 0.0 { brighter / (1.0 + brighter) } else { 1.0 };
-        near.sort_by_key(|photon| photon.chain);
+        near.sort_unstable_by_key(|photon| photon.chain);
         let mut each = Vec::new();
         for prototype in near.chunk_by_mut(|a, b| a.chain == b.chain) {
             Lobe::divide(prototype, size, 3, &mut each);
@@ -185,7 +185,7 @@ impl Leaf {
         // are usually less bright, so the combined factor is the square root of the solid angle.
         let mut strengths: Vec<(Lobe, f64)> =
             each.into_iter().map(|(lobe, light)| (lobe, (light * lobe.fills().sqrt()).sqrt())).collect();
-        strengths.sort_by(|a, b| b.1.total_cmp(&a.1));
+        strengths.sort_unstable_by(|a, b| b.1.total_cmp(&a.1));
         strengths.truncate(LOBES - 1);
         let total: f64 = strengths.iter().map(|(_, strength)| strength).sum();
         let part = if total > 0.0 { (1.0 - WIDE) / total } else { 0.0 };

@@ -133,7 +133,7 @@ impl Lobe {
         if halvings > 0 && photons.len() > Self::FEW {
             let across = photons.iter().map(|p| lobe.off(p) * lobe.off(p)).sum::<DVec3>();
             let axis = (0..3).max_by(|&a, &b| across[a].total_cmp(&across[b])).unwrap_or(0);
-            photons.sort_by(|a, b| lobe.off(a)[axis].total_cmp(&lobe.off(b)[axis]));
+            photons.sort_unstable_by(|a, b| lobe.off(a)[axis].total_cmp(&lobe.off(b)[axis]));
             let half = photons.partition_point(|p| lobe.off(p)[axis] < 0.0);
             let spread = lobe.spread(photons);
             let (one, other) = photons.split_at_mut(half);

@@ -90,7 +90,7 @@ fn divide(groups: &mut [Vec<DVec3>], most: usize, each: &mut impl FnMut(&[Vec<DV
     let of_all = Region::around(groups.iter().map(|points| points[0]));
     let size = of_all.max - of_all.min;
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-    groups.sort_by(|a, b| a[0][axis].total_cmp(&b[0][axis]));
+    groups.sort_unstable_by(|a, b| a[0][axis].total_cmp(&b[0][axis]));
     let (one, other) = groups.split_at_mut(groups.len() / 2);
     divide(one, most / 2, each);
     divide(other, most - most / 2, each);

@@ -38,13 +38,11 @@ loops! {
     }
 }
 
-loops! {
-    /// The densities with which matte surfaces scatter into directions to light, over those of their draws. `follows`
-    /// is 1, or 0 if paths end there.
-    pub(super) fn compare(surfaces: &SurfaceBlock, lights: &LightBlock, follows: f32, ratio: &mut [f32; LANES]) {
-        for i in 0..LANES {
-            let cosine = surfaces.normal.get(i).dot(lights.direction.get(i));
-            ratio[i] = choose(mask(lights.pdf[i] > 0.0), follows * cosine * FRAC_1_PI / lights.pdf[i], 0.0);
-        }
+/// The densities with which matte surfaces scatter into directions to light, over those of their draws. `follows` is 1,
+/// or 0 if paths end there.
+pub(super) fn compare(surfaces: &SurfaceBlock, lights: &LightBlock, follows: f32, ratio: &mut [f32; LANES]) {
+    for i in 0..LANES {
+        let cosine = surfaces.normal.get(i).dot(lights.direction.get(i));
+        ratio[i] = choose(mask(lights.pdf[i] > 0.0), follows * cosine * FRAC_1_PI / lights.pdf[i], 0.0);
     }
 }

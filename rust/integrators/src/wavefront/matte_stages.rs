@@ -47,7 +47,7 @@ impl WavefrontWorker<'_> {
         let mut follows = if self.follows { 1.0 } else { 0.0 };
         if self.extra.media {
             // Weighed when it arrives.
-            direct_light::compare(self.level, &block.surfaces, &block.lights, follows, &mut block.media.ratio);
+            direct_light::compare(&block.surfaces, &block.lights, follows, &mut block.media.ratio);
             (block.media.of_shadows, follows) = (block.media.here, 0.0);
         }
         direct_light::reflect(

@@ -46,7 +46,7 @@ pub fn covered(segments: &[[DVec2; 2]], rule: Rule) -> f64 {
             },
         )
         .collect();
-    rising.sort_by(|a, b| a.low.y.total_cmp(&b.low.y));
+    rising.sort_unstable_by(|a, b| a.low.y.total_cmp(&b.low.y));
     let mut heights: Vec<f64> = rising.iter().flat_map(|r| [r.low.y, r.high.y]).collect();
     heights.sort_unstable_by(f64::total_cmp);
     heights.dedup();
