@@ -66,7 +66,7 @@ pub fn covered(segments: &[[DVec2; 2]], rule: Rule) -> f64 {
 /// Area within a slab that no segment ends in.
 fn slab(open: &[Rising], bottom: f64, top: f64, rule: Rule) -> f64 {
     let mut spans: Vec<(f64, f64, i32)> = open.iter().map(|r| (r.at(bottom), r.at(top), r.step)).collect();
-    spans.sort_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)));
+    spans.sort_unstable_by(|a, b| (a.0 + a.1).total_cmp(&(b.0 + b.1)));
     if spans.windows(2).all(|pair| pair[0].0 <= pair[1].0 && pair[0].1 <= pair[1].1) {
         return between(&spans, 0.0, 1.0, rule) * (top - bottom);
     }
@@ -83,7 +83,7 @@ fn slab(open: &[Rising], bottom: f64, top: f64, rule: Rule) -> f64 {
     let parts = cuts.windows(2).map(|ends| {
         let &[from, to] = ends else { return 0.0 };
         let middle = |span: &(f64, f64, i32)| span.0 + (span.1 - span.0) * 0.5 * (from + to);
-        spans.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
+        spans.sort_unstable_by(|a, b| middle(a).total_cmp(&middle(b)));
         between(&spans, from, to, rule)
     });
     parts.sum::<f64>() * (top - bottom)

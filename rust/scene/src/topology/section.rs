@@ -191,7 +191,7 @@ impl Segments {
         self.ends.iter().flatten().for_each(|&p| is_odd[p as usize] ^= true);
         let at = |p: u32| self.points[p as usize];
         let mut odd: Vec<u32> = (0..is_odd.len() as u32).filter(|&p| is_odd[p as usize]).collect();
-        odd.sort_by(|&p, &q| at(p).x.total_cmp(&at(q).x));
+        odd.sort_unstable_by(|&p, &q| at(p).x.total_cmp(&at(q).x));
         let mut stands_for: Vec<u32> = (0..is_odd.len() as u32).collect();
         for (i, &p) in odd.iter().enumerate() {
             if !is_odd[p as usize] {
