@@ -18,7 +18,7 @@ use raywright_scene::{Scene, SurfaceBlock};
 /// A path, or a shadow ray, on its way. Its ray starts where its current medium does.
 #[derive(Clone, Copy)]
 pub(super) struct Flight {
-    /// Its place in the queue that it comes from, and its sample.
+    /// Index in its queue, and sample.
     pub place: u32,
     pub sample: u32,
     /// The media around it.
@@ -26,9 +26,9 @@ pub(super) struct Flight {
     /// Number of boundaries that it has passed. A partial passage counts as several.
     pub passed: u32,
     pub weights: Weights,
-    /// Of a path, the optical depth of its hero that is left before it scatters.
+    /// For a path: remaining optical depth of its hero before the next scattering event.
     pub depth: f64,
-    /// Of a shadow ray, the length that is left to the light.
+    /// For a shadow ray: remaining length to the light.
     pub way: f64,
 }
 
@@ -42,23 +42,23 @@ pub(super) struct FlightQueue {
 pub(super) struct Flights<'a> {
     pub stacks: MediumStacks<'a>,
     pub now: FlightQueue,
-    /// Those that have passed a boundary.
+    /// Flights after a boundary.
     pub next: FlightQueue,
     pub primitives: Vec<u32>,
     /// All of the hits, in scenes where the primitive does not tell the rest.
     pub hits: Vec<Hit>,
     has_hits: bool,
-    /// Those that have hit something.
+    /// Indices of the flights with a hit.
     pub which: Vec<u32>,
     pub surfaces: SurfaceBlock,
-    /// Interfaces that were met lately.
+    /// Recent interfaces.
     known: Vec<Option<KnownInterface>>,
-    /// Flights that others may be near where they hit something.
+    /// Flights whose hit may have other surfaces close by.
     unclear: Vec<(Flight, Ray)>,
     boundaries: BoundaryQueries,
 }
 
-/// What a ray comes to at a surface.
+/// The interface at a hit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interface {
     /// The media behind.
@@ -81,7 +81,7 @@ struct KnownInterface {
 /// Number of interfaces that are remembered, a power of 2.
 const KNOWN: usize = 256;
 
-/// Where a flight has hit something.
+/// The hit of a flight.
 pub(super) struct Stop<'s> {
     pub interface: Interface,
     pub ray: &'s Ray,
@@ -95,7 +95,7 @@ pub(super) struct Stop<'s> {
     lane: usize,
 }
 
-/// How a flight goes on.
+/// Continuation of a flight after a hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Passage {
     /// It does not.
@@ -106,7 +106,7 @@ pub(super) enum Passage {
     Along,
 }
 
-/// What flights do on their ways.
+/// Actions of flights.
 pub(super) trait Traveller {
     /// Takes a flight along its ray up to a `t`, infinite if it hits nothing. Returns whether it comes there.
     fn travel(&mut self, flight: &mut Flight, stacks: &MediumStacks<'_>, ray: &Ray, end: f64) -> bool;

@@ -1,4 +1,4 @@
-//! What is known of paths in scenes with media or nested dielectrics, by sample.
+//! State of paths in scenes with media or nested dielectrics, by sample.
 
 use super::flights::{Flight, FlightQueue};
 use super::media_sharing::MediaSharing;
@@ -14,7 +14,7 @@ use raywright_optics::{Phase, Rgb};
 use raywright_scene::media::Coefficients;
 use raywright_scene::{LightSampleContext, Scene};
 
-/// What one thread needs where a scene has media or nested dielectrics.
+/// Per-thread state for scenes with media or nested dielectrics.
 pub(super) struct Media<'a> {
     /// By sample.
     pub paths: Vec<PathMedia>,
@@ -32,7 +32,7 @@ pub(super) struct Media<'a> {
     pub sharing: Option<MediaSharing>,
 }
 
-/// What is known of the path of a sample.
+/// State of the path of a sample.
 #[derive(Clone, Copy)]
 pub(super) struct PathMedia {
     /// Media at the origin of its ray, and behind the surface that it has come to: numbers in [`MediumStacks`].

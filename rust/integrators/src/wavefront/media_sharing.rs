@@ -1,11 +1,11 @@
-//! What paths of groups share from their second vertex on, in a homogeneous medium ([`crate::media::path_reuse`]).
+//! Path reuse within groups of samples, in a homogeneous medium ([`crate::media::path_reuse`]).
 
 use crate::media::path_reuse::{Reuse, SecondVertex, SharedVertices};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::Scene;
 
-/// What paths of a batch share in homogeneous media.
+/// Shared vertices of a batch in homogeneous media.
 #[derive(Default)]
 pub(super) struct MediaSharing {
     /// By sample.
