@@ -99,7 +99,9 @@ def coverage(session, language):
         return
     # Installs llvm-tools of the toolchain by itself.
     cargo(session, "install", "--quiet", "--locked", "cargo-llvm-cov")
-    cargo(session, "llvm-cov", "--release", "--locked", "--summary-only", *session.posargs)
+    others = ["--exclude=raywright-python", "--exclude=raywright-benches"]
+    report = ["--release", "--locked", "--summary-only", "--workspace", *others]
+    cargo(session, "llvm-cov", *report, *session.posargs)
 
 
 @nox.session

@@ -495,7 +495,7 @@ def aovs(
     Raises ValueError for a name that is not known.
     """
 
-def plan(scene: CompiledScene) -> tuple[str, list[tuple[str, bool, str]]]:
+def plan(scene: CompiledScene) -> list[tuple[str, bool, str]]:
     """Return the kernel that shades the scene, and rows of a feature, its presence, and the consequence."""
 
 def denoise_candidates(

@@ -29,13 +29,10 @@ class PlanRow:
 
 @dataclass(frozen=True, repr=False)
 class Plan:
-    """The features that rendering a scene needs, and the kernel that is chosen for it. It prints as a table.
+    """The features that rendering a scene needs, and those that are left out. It prints as a table.
 
     Attributes
     ----------
-    kernel : str
-        Kernel that traces paths: ``"wavefront"`` (stages in float32), or ``"general"`` where shading normals
-        are used as given.
     rows : tuple of PlanRow
         Every feature, whether this scene has it, and the consequence.
 
@@ -46,11 +43,10 @@ class Plan:
     Examples
     --------
     >>> plan = rw.Scene(rw.Sphere()).plan()
-    >>> plan.kernel, plan.needed
-    ('wavefront', ('shapes',))
+    >>> plan.needed
+    ('shapes',)
     """
 
-    kernel: str
     rows: tuple[PlanRow, ...]
 
     @property
@@ -65,10 +61,10 @@ class Plan:
 
     def _repr_html_(self) -> str:
         rows = [(row.what, "yes" if row.needed else "no", row.meaning) for row in self.rows]
-        return html_table(f"kernel: {self.kernel}", ("", "needed", ""), rows)
+        return html_table("What the scene needs", ("", "needed", ""), rows)
 
     def __repr__(self) -> str:
-        lines = [("", "needed", f"kernel: {self.kernel}")]
+        lines = [("", "needed", "")]
         lines += [(row.what, "yes" if row.needed else "no", row.meaning) for row in self.rows]
         widths = [max(len(line[i]) for line in lines) for i in (0, 1)]
         return "\n".join(f"{a:<{widths[0]}}  {b:<{widths[1]}}  {c}".rstrip() for a, b, c in lines)

@@ -388,13 +388,10 @@ class Scene(BuiltOnce):
         --------
         >>> scene = rw.Scene(rw.Sphere(material=rw.Mirror()), environment=1.0)
         >>> plan = scene.plan()
-        >>> plan.kernel
-        'wavefront'
         >>> plan.needed[:2]
         ('light', 'materials')
         """
-        kernel, rows = _core.plan(self._compiled())
-        return Plan(kernel, tuple(PlanRow(*row) for row in rows))
+        return Plan(tuple(PlanRow(*row) for row in _core.plan(self._compiled())))
 
     def on_device(self, device: Device[Held]) -> AbstractContextManager[Held]:
         """Copy the scene to a device, which then answers ray queries.

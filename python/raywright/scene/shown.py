@@ -73,5 +73,4 @@ def _rows(scene: Any) -> Iterator[tuple[str, str]]:
     yield "tree", f"{size}, SAH cost {info.sah_cost:.4g}"
     yield "built in", f"{info.build_seconds:.4f} s"
     yield "memory", f"{scene.bytes:,} bytes"
-    plan = scene.plan()
-    yield "plan", f"kernel {plan.kernel}; needs {', '.join(plan.needed) or 'nothing more'}"
+    yield "needs", ", ".join(scene.plan().needed) or "nothing more than rays"

@@ -1,8 +1,7 @@
 //! Direct light.
 
-use super::transport::Settings;
-use super::volumes::VolumetricPath;
-use super::wavefront::Wavefront;
+use super::begin_paths::begin;
+use super::path_settings::PathSettings;
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 
@@ -25,13 +24,7 @@ impl Default for Direct {
 impl Integrator for Direct {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let (light_samples, splits) = (self.light_samples.max(1), self.surface_samples.max(1));
-        if job.scene.plan().needs().media {
-            if (light_samples, splits) == (1, 1) && Wavefront::takes(&job) {
-                return Box::new(Wavefront::dimmed(job, 1));
-            }
-            return VolumetricPath { light_samples, splits, ..VolumetricPath::dimmed(1) }.begin(job);
-        }
-        Settings { light_samples, splits, ..Settings::path(Some(1), u32::MAX) }.begin(job, cancel)
+        begin(PathSettings { light_samples, splits, ..PathSettings::dimmed(1) }, job, cancel)
     }
 
     fn takes_media(&self) -> bool {

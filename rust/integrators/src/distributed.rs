@@ -1,6 +1,7 @@
 //! Distributed ray tracing.
 
-use super::transport::{Follow, Settings};
+use super::begin_paths::begin;
+use super::path_settings::{Follow, PathSettings};
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -36,14 +37,14 @@ impl Default for Distributed {
 impl Integrator for Distributed {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
         let splits = self.splits.max(1);
-        Settings {
+        let settings = PathSettings {
             follow: Follow::MinDensity(Self::GLOSS),
             ambient: self.ambient,
             light_samples: splits,
             splits,
-            ..Settings::path(Some(self.max_depth), u32::MAX)
-        }
-        .begin(job, cancel)
+            ..PathSettings::dimmed(self.max_depth)
+        };
+        begin(settings, job, cancel)
     }
 
     fn takes_waves(&self) -> bool {

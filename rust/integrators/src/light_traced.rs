@@ -1,9 +1,9 @@
 //! Light tracing.
 
+use super::begin_paths::begin;
 use super::light_paths::{LightPaths, Limits};
-use super::transport::Settings;
-use super::volumes::{Counting, MediaLightPaths, VolumetricPath};
-use super::wavefront::Wavefront;
+use super::path_settings::PathSettings;
+use super::volumes::{Counting, MediaLightPaths};
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};
@@ -30,15 +30,7 @@ impl Default for LightTraced {
 
 impl Integrator for LightTraced {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        let seen = if job.scene.plan().needs().media {
-            if Wavefront::takes(&job) {
-                Box::new(Wavefront::dimmed(job, 0))
-            } else {
-                VolumetricPath::dimmed(0).begin(job)
-            }
-        } else {
-            Settings::path(Some(0), u32::MAX).begin(job, cancel)
-        };
+        let seen = begin(PathSettings::dimmed(0), job, cancel);
         let limits = Limits { max_depth: self.max_depth, roulette_depth: self.roulette_depth };
         Box::new(LightTracing { limits, job, seen, emitters: job.scene.emitters() })
     }

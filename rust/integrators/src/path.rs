@@ -1,8 +1,9 @@
 //! Path tracing.
 
-use super::transport::{Settings, can_share};
-use super::volumes::{self, VolumetricPath};
-use super::wavefront::Wavefront;
+use super::begin_paths::begin;
+use super::media::path_reuse;
+use super::path_settings::PathSettings;
+use super::path_sharing;
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_scene::Scene;
@@ -31,11 +32,6 @@ impl Default for Path {
 }
 
 impl Path {
-    fn settings(&self, scene: &Scene) -> Settings {
-        let (shares, guided) = (self.patch(scene) > 1, self.is_guided(scene));
-        Settings { shares, guided, ..Settings::path(self.max_depth, self.roulette_depth) }
-    }
-
     /// Return whether paths are guided in a scene, as far as known without photons. Guiding requires specular surfaces,
     /// which scenes of the plain variant do not have, and light beyond them. Paths in media and spectral paths are
     /// never guided.
@@ -46,19 +42,13 @@ impl Path {
             && !scene.plan().needs().media
             && !scene.plan().needs().waves
     }
-
-    /// Begin a session as [`Integrator::begin`] does, by the loop in f64 that knows everything, without sharing.
-    pub fn begin_in_general<'a>(&self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        self.settings(job.scene).begin_in_general(job, cancel)
-    }
 }
 
 impl Integrator for Path {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        if job.scene.plan().needs().media && !Wavefront::takes(&job) {
-            return VolumetricPath::path(self.max_depth, self.roulette_depth).begin(job);
-        }
-        self.settings(job.scene).begin(job, cancel)
+        let (shares, guided) = (self.patch(job.scene) > 1, self.is_guided(job.scene));
+        let settings = PathSettings { shares, guided, ..PathSettings::path(self.max_depth, self.roulette_depth) };
+        begin(settings, job, cancel)
     }
 
     fn takes_media(&self) -> bool {
@@ -72,6 +62,6 @@ impl Integrator for Path {
     /// 1 if paths cannot be reused, or none continues from its second surface.
     fn patch(&self, scene: &Scene) -> u32 {
         let goes_on = self.max_depth.is_none_or(|depth| depth > 1);
-        if goes_on && (can_share(scene) || volumes::can_share(scene)) { self.reuse.max(1) } else { 1 }
+        if goes_on && (path_sharing::can_share(scene) || path_reuse::can_share(scene)) { self.reuse.max(1) } else { 1 }
     }
 }

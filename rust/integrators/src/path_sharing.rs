@@ -20,6 +20,17 @@ use raywright_optics::Rgb;
 use raywright_scene::{Scene, SurfaceInteraction};
 use std::ops::Range;
 
+/// Whether paths can share in a scene: two points see each other or do not, at any time, and what is found at a point
+/// does not depend on who looks.
+///
+/// Masks and nested media make sight more than a yes or no; where something moves, the samples of a group see the scene
+/// at times of their own; and a filtered texture shows to each what is of its own width.
+pub(crate) fn can_share(scene: &Scene) -> bool {
+    let needs = scene.plan().needs();
+    let is_open = !(needs.masks || needs.nested || needs.media || needs.points.width || needs.waves);
+    is_open && !needs.motion && !scene.lights().is_dark()
+}
+
 /// A point of a diffuse surface on a path.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SharingPoint {
@@ -236,7 +247,7 @@ impl PathSharing {
             shared: Vec::new(),
             geometry: Vec::new(),
             fading: Vec::new(),
-            rays: PathRays::default(),
+            rays: PathRays::with_room(0, false),
             term: Vec::new(),
             is_occluded: Vec::new(),
         }

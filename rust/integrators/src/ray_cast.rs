@@ -1,6 +1,7 @@
 //! Ray casting.
 
-use super::transport::{Follow, Settings};
+use super::begin_paths::begin;
+use super::path_settings::{Follow, PathSettings};
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -26,14 +27,14 @@ impl Default for RayCast {
 
 impl Integrator for RayCast {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        Settings {
+        let settings = PathSettings {
             follow: Follow::Nothing,
             shadows: self.shadows,
             ambient: self.ambient,
             light_samples: self.light_samples.max(1),
-            ..Settings::path(Some(1), u32::MAX)
-        }
-        .begin(job, cancel)
+            ..PathSettings::dimmed(1)
+        };
+        begin(settings, job, cancel)
     }
 
     fn takes_waves(&self) -> bool {

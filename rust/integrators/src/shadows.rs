@@ -2,7 +2,7 @@
 
 use super::boundary_queries::BoundaryQueries;
 use super::nesting::{Boundary, MediumStack};
-use raywright_base::math::{Hit, Ray, RayLanes, RayQueue};
+use raywright_base::math::{Hit, Ray, RayQueue};
 use raywright_optics::Rgb;
 use raywright_scene::materials::Interior;
 use raywright_scene::{Scene, opacity_at};
@@ -31,12 +31,6 @@ impl Shadows {
     #[inline]
     pub fn push(&mut self, ray: &Ray) {
         self.rays.push(ray);
-    }
-
-    /// Append the rays of a mask's lanes.
-    #[inline]
-    pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
-        self.rays.push_lanes(rays, mask);
     }
 
     /// Set the sample and the contribution of the next ray without one.

@@ -1,6 +1,6 @@
 //! Rendering with a transparent background.
 
-use super::transport::FirstSeen;
+use super::first_seen::FirstSeen;
 use super::{CameraSample, Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;

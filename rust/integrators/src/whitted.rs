@@ -1,7 +1,7 @@
 //! Whitted ray tracing, without recursion.
 
-use super::transport::{Follow, Settings};
-use super::volumes::{Onwards, VolumetricPath};
+use super::begin_paths::begin;
+use super::path_settings::{Follow, PathSettings};
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -31,20 +31,14 @@ impl Default for Whitted {
 
 impl Integrator for Whitted {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        if job.scene.plan().needs().media {
-            let (onwards, ambient, least) = (Onwards::DeltaLobes, self.ambient, self.contribution);
-            let light_samples = self.light_samples.max(1);
-            let settings = VolumetricPath::dimmed(self.max_depth);
-            return VolumetricPath { onwards, ambient, least, light_samples, ..settings }.begin(job);
-        }
-        Settings {
+        let settings = PathSettings {
             follow: Follow::DeltaLobes,
             ambient: self.ambient,
             light_samples: self.light_samples.max(1),
             least: self.contribution,
-            ..Settings::path(Some(self.max_depth), u32::MAX)
-        }
-        .begin(job, cancel)
+            ..PathSettings::dimmed(self.max_depth)
+        };
+        begin(settings, job, cancel)
     }
 
     fn takes_media(&self) -> bool {

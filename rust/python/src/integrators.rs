@@ -220,9 +220,8 @@ pub fn aovs<'py>(
     channels.iter().zip(pictures).map(array).collect()
 }
 
-/// The scene's plan: the loop that traces its paths, and rows of feature, presence and effect.
+/// The scene's plan: rows of feature, presence and effect.
 #[pyfunction]
-pub fn plan(scene: &Bound<'_, CompiledScene>) -> (&'static str, Vec<PlanRow>) {
-    let plan = scene.get().0.plan();
-    (plan.kernel(), plan.rows())
+pub fn plan(scene: &Bound<'_, CompiledScene>) -> Vec<PlanRow> {
+    scene.get().0.plan().rows()
 }

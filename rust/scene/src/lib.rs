@@ -46,8 +46,8 @@ pub use interaction::Interaction;
 pub use lights::SeenTriangle;
 pub use lights::{
     Aim, ConstantEnvironment, DirectionalLight, EmissionDensity, EmissionNumbers, EmissionPdf, EmissionSample,
-    Emitters, EnvironmentMap, Light, LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext,
-    Lights, Picture, Place, PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
+    Emitters, EnvironmentMap, Light, LightBounds, LightSample, LightSampleContext, Lights, Picture, Place,
+    PointEmission, PointLight, Profile, Projector, Reach, Source, SpotLight, SunSky, Waved,
 };
 pub use lights::{LightBlock, ReceiverBlock};
 pub use lone_shapes::LoneShapes;

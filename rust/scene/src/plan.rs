@@ -292,23 +292,11 @@ impl Plan {
     /// Kind of a mixture, or of a BSDF that is not known in advance.
     pub const MIXED: usize = AnyBsdf::KINDS;
 
-    /// Kind of a shape's BSDF in vacuum, on the front or the back.
-    #[inline]
-    pub fn kind(&self, shape: u32, is_front: impl FnOnce() -> bool) -> usize {
-        let [front, back] = self.kinds[shape as usize];
-        (if front == back || is_front() { front } else { back }).into()
-    }
-
     /// Kind of both sides of a shape's BSDF in vacuum; [`Plan::MIXED`] if they differ.
     #[inline]
     pub fn kind_of_shape(&self, shape: u32) -> usize {
         let [front, back] = self.kinds[shape as usize];
         if front == back { front.into() } else { Self::MIXED }
-    }
-
-    /// Name of the loop that traces paths: "wavefront" if all paths take the same stages, otherwise "general".
-    pub fn kernel(&self) -> &'static str {
-        if self.as_given { "general" } else { "wavefront" }
     }
 
     /// The plan as a table.
@@ -376,7 +364,6 @@ mod tests {
     #[test]
     fn diffuse_rooms_are_plain() {
         for scene in [furnace(0.5, 1.0), cornell(8, 8).0] {
-            assert_eq!(scene.plan().kernel(), "wavefront");
             let has: Vec<_> = scene.plan().rows().into_iter().filter(|row| row.1).map(|row| row.0).collect();
             assert_eq!(has, ["light"]);
         }

@@ -132,6 +132,12 @@ impl<B: Bsdf> SurfaceInteraction<B> {
         (is_same_side && !is_bent).then_some(met)
     }
 
+    /// The same interaction, with a reference to its BSDF.
+    pub fn by_ref(&self) -> SurfaceInteraction<&B> {
+        let &Self { surface, frame, ref bsdf, wo, side, is_flat, is_bent, as_given, curvature } = self;
+        SurfaceInteraction { surface, frame, bsdf, wo, side, is_flat, is_bent, as_given, curvature }
+    }
+
     /// Reflectance of ambient light ([`Material::ambient`](super::Material::ambient)); the other arguments are those of
     /// [`SurfaceInteraction::new`].
     pub fn ambient(&self, scene: &Scene, ray: &Ray, hit: &Hit, gaze: impl Into<LookupContext>, outside: f64) -> Rgb {

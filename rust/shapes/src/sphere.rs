@@ -33,14 +33,6 @@ impl Sphere {
         Point { position, error, normal, uv, dp: dn.map(|d| d * self.radius), dn }
     }
 
-    /// [`Shape::sight_from`] for a reference point outside, and whether it is outside; otherwise the result is
-    /// meaningless.
-    #[inline(always)]
-    pub fn sight_from_outside(&self, place: DVec3, u: [f64; 2]) -> (Seen, bool) {
-        let (cone, is_outside) = self.cone_from_outside(place);
-        (self.sight_in(&cone, u), is_outside)
-    }
-
     /// Sample a point uniformly in the cone that the sphere subtends.
     #[inline(always)]
     fn sight_in(&self, cone: &Cone, u: [f64; 2]) -> Seen {

@@ -183,7 +183,6 @@ def test_integrators_compare_and_pickle():
 def test_plan_tells_what_is_left_out():
     scene, _ = rw.scenes.cornell_box()
     plan = scene.plan()
-    assert plan.kernel == "wavefront"
     assert plan.needed == ("light", "float64 vertices")
     assert "motion" in plan.left_out
     lines = str(plan).splitlines()

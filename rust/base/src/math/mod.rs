@@ -45,7 +45,7 @@ pub use number::{Bounded, Number, Triple};
 pub use path_rays::PathRays;
 pub use ray::{Hit, Ray};
 pub use ray_columns::{HitColumns, Numbers, PlacedHits, RayBatch, RayColumns, Vectors, read_column};
-pub use ray_queue::{RayLanes, RayQueue};
+pub use ray_queue::RayQueue;
 pub use region::Region;
 pub use singular::at_right_angles;
 pub use tiling::{Run, Tiling, row_length};

@@ -47,14 +47,19 @@ impl PathRays {
         self
     }
 
-    /// Make room for so many rays with ends, and keep those that are there.
+    /// Make room for so many rays, and keep those that are there.
     pub fn make_room(&mut self, most: usize) {
         let room = most + LANES;
-        if self.t_max.len() < room {
+        if self.misses.len() < room {
             self.origin.iter_mut().for_each(|column| column.resize(2 * room, 0.0));
             self.direction.iter_mut().for_each(|column| column.resize(2 * room, 0.0));
-            self.t_max.resize(2 * room, f64::INFINITY);
             self.misses.resize(2 * room, [Ray::NO_TRIANGLE; 2]);
+            if !self.t_max.is_empty() {
+                self.t_max.resize(2 * room, f64::INFINITY);
+            }
+            if !self.time.is_empty() {
+                self.time.resize(2 * room, 0.0);
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! A queue of rays in SoA layout.
 
-use super::{DVec3, LANES, Numbers, Ray, RayColumns, VectorLanes, Vectors};
+use super::{Numbers, Ray, RayColumns, Vectors};
 
 /// A queue of rays in SoA layout, in f64, since rays that leave a surface must not be rounded.
 #[derive(Clone, Debug, Default)]
@@ -13,52 +13,6 @@ pub struct RayQueue {
     misses: Vec<[u32; 2]>,
     /// Scratch space for the same rays in row layout; its content is that of the last call.
     rows: Vec<Ray>,
-}
-
-/// Rays to be queued, one per lane, with a `t_min` of 0.
-#[derive(Clone, Debug)]
-pub struct RayLanes {
-    /// The origins.
-    pub origin: VectorLanes,
-    /// The directions.
-    pub direction: VectorLanes,
-    /// The greatest `t`.
-    pub t_max: [f64; LANES],
-    /// The times.
-    pub time: [f64; LANES],
-    /// Triangles that they are known to miss.
-    pub misses: [[u32; 2]; LANES],
-}
-
-/// The selected lanes, in order.
-struct QueuedRay {
-    lanes: [u8; LANES],
-    count: usize,
-}
-
-impl QueuedRay {
-    #[inline(always)]
-    fn of(mask: u32) -> Self {
-        let (mut lanes, mut count) = ([0; LANES], 0);
-        for lane in 0..LANES {
-            lanes[count & (LANES - 1)] = lane as u8;
-            count += (mask >> lane & 1) as usize;
-        }
-        Self { lanes, count }
-    }
-
-    /// Append the values of the selected lanes.
-    #[inline(always)]
-    fn append<T: Copy>(&self, column: &mut Vec<T>, all: &[T; LANES]) {
-        if self.count == LANES {
-            return column.extend_from_slice(all);
-        }
-        let mut picked = *all;
-        for (picked, lane) in picked.iter_mut().zip(self.lanes) {
-            *picked = all[usize::from(lane) & (LANES - 1)];
-        }
-        column.extend_from_slice(&picked[..self.count]);
-    }
 }
 
 impl RayQueue {
@@ -93,48 +47,6 @@ impl RayQueue {
         self.t_max.push(ray.t_max);
         self.time.push(ray.time);
         self.misses.push(ray.misses);
-    }
-
-    /// Add the rays of the lanes in a mask.
-    #[inline]
-    pub fn push_lanes(&mut self, rays: &RayLanes, mask: u32) {
-        let chosen = QueuedRay::of(mask);
-        for (columns, lanes) in [(&mut self.origin, &rays.origin), (&mut self.direction, &rays.direction)] {
-            for (column, lanes) in columns.iter_mut().zip(lanes.by_axis()) {
-                chosen.append(column, lanes);
-            }
-        }
-        chosen.append(&mut self.t_min, &[0.0; LANES]);
-        chosen.append(&mut self.t_max, &rays.t_max);
-        chosen.append(&mut self.time, &rays.time);
-        chosen.append(&mut self.misses, &rays.misses);
-    }
-
-    /// Gather sixteen rays.
-    ///
-    /// # Panics
-    ///
-    /// If an index is out of range.
-    #[inline]
-    pub fn gather(&self, which: &[u32; LANES], rays: &mut [Ray; LANES]) {
-        // Equal lengths are established here once, which avoids bounds checks per lane.
-        let count = self.len();
-        let [ox, oy, oz] = self.origin.each_ref().map(|column| &column[..count]);
-        let [dx, dy, dz] = self.direction.each_ref().map(|column| &column[..count]);
-        let [t_min, t_max, time] = [&self.t_min[..count], &self.t_max[..count], &self.time[..count]];
-        let misses = &self.misses[..count];
-        for lane in 0..LANES {
-            let i = which[lane] as usize;
-            assert!(i < count, "a ray that is there");
-            rays[lane] = Ray {
-                origin: DVec3::new(ox[i], oy[i], oz[i]),
-                direction: DVec3::new(dx[i], dy[i], dz[i]),
-                t_min: t_min[i],
-                t_max: t_max[i],
-                time: time[i],
-                misses: misses[i],
-            };
-        }
     }
 
     /// One of the rays.
@@ -187,39 +99,16 @@ mod tests {
     }
 
     #[test]
-    fn rays_come_out_as_they_went_in_one_by_one_and_by_lanes() {
+    fn rays_come_out_as_they_went_in() {
         let mut queue = RayQueue::default();
-        let mut wanted = Vec::new();
-        for (start, mask) in [(0, 0xffff), (16, 0), (32, 0b1010_0000_0000_0001), (48, 0x7ffe), (64, 0xffff)] {
-            queue.push(&ray(1000 + start));
-            wanted.push(ray(1000 + start));
-            let mut lanes = RayLanes {
-                origin: VectorLanes::ZERO,
-                direction: VectorLanes::ZERO,
-                t_max: [0.0; LANES],
-                time: [0.0; LANES],
-                misses: [[0; 2]; LANES],
-            };
-            for lane in 0..LANES {
-                let ray = ray(start + lane as u32);
-                lanes.origin.set(lane, ray.origin);
-                lanes.direction.set(lane, ray.direction);
-                (lanes.t_max[lane], lanes.time[lane], lanes.misses[lane]) = (ray.t_max, ray.time, ray.misses);
-                if mask >> lane & 1 == 1 {
-                    wanted.push(ray);
-                }
-            }
-            queue.push_lanes(&lanes, mask);
-        }
+        let mut wanted: Vec<Ray> = (0..40).map(ray).collect();
+        wanted.iter().for_each(|ray| queue.push(ray));
         queue.set_t_min(2, 0.25);
         wanted[2].t_min = 0.25;
         assert_eq!(queue.rows(), wanted);
         let columns = RayBatch::Columns(queue.columns());
         assert_eq!((queue.len(), columns.len(), queue.is_empty()), (wanted.len(), wanted.len(), false));
         for (i, &ray) in wanted.iter().enumerate() {
-            let mut gathered = [Ray::new(DVec3::ZERO, DVec3::X); LANES];
-            queue.gather(&[i as u32; LANES], &mut gathered);
-            assert_eq!(gathered, [ray; LANES]);
             assert_eq!((queue.get(i), columns.get(i)), (ray, Ray { time: 0.0, ..ray }));
             assert!(columns.misses(i, ray.misses[1]) && !columns.misses(i, ray.misses[1] + 1));
         }

@@ -88,6 +88,18 @@ impl SamplerColumns {
         self.len = some.len();
     }
 
+    /// Appends another that is equal to number `i`.
+    pub fn repeat(&mut self, i: usize) {
+        for column in [&mut self.pixel, &mut self.sample, &mut self.number] {
+            column.truncate(self.len);
+            column.push(column[i]);
+        }
+        if !self.words.is_empty() {
+            self.words.push(self.words[i]);
+        }
+        self.len += 1;
+    }
+
     /// Appends those of the lanes in a mask; `number` is the number of each among the samples of its pixel.
     pub fn push(&mut self, level: Level, mask: u32, samplers: &SamplerLanes, number: &[u32; LANES]) {
         let (at, room) = (self.len, self.len + LANES);
@@ -136,14 +148,26 @@ impl SamplerColumns {
 }
 
 impl SamplerLanes {
-    /// The numbers of [`SamplerLanes::one_and_two`] for the same dimension in all lanes, with the pair in f32.
+    /// [`SamplerLanes::choices_and_pairs`] for the same dimension in all lanes.
     #[inline]
     pub fn choice_and_pair(&self, level: Level, dimension: u32, one: &mut [f64; LANES], two: &mut [[f32; LANES]; 2]) {
+        self.choices_and_pairs(level, &[dimension; LANES], one, two);
+    }
+
+    /// The numbers of [`SamplerLanes::one_and_two`] for a dimension of each lane, with the pair in f32.
+    #[inline]
+    pub fn choices_and_pairs(
+        &self,
+        level: Level,
+        dimensions: &[u32; LANES],
+        one: &mut [f64; LANES],
+        two: &mut [[f32; LANES]; 2],
+    ) {
         if self.kind == SamplerKind::Independent {
-            return independent(level, self, dimension, one, two);
+            return independent(level, self, dimensions, one, two);
         }
         let mut pair = [[0.0; LANES]; 2];
-        self.one_and_two(level, &[dimension; LANES], one, &mut pair);
+        self.one_and_two(level, dimensions, one, &mut pair);
         for (to, from) in two.iter_mut().zip(pair) {
             *to = from.map(|x| lesser(x as f32, BELOW_ONE));
         }
@@ -182,9 +206,14 @@ loops! {
 
 loops! {
     /// Both halves of a block of independent numbers.
-    fn independent(lanes: &SamplerLanes, dimension: u32, one: &mut [f64; LANES], two: &mut [[f32; LANES]; 2]) {
+    fn independent(
+        lanes: &SamplerLanes,
+        dimensions: &[u32; LANES],
+        one: &mut [f64; LANES],
+        two: &mut [[f32; LANES]; 2],
+    ) {
         for i in 0..LANES {
-            let [a, b, c, d] = lanes.block(i, dimension);
+            let [a, b, c, d] = lanes.block(i, dimensions[i]);
             one[i] = number(joined(a, b));
             two[0][i] = step(c);
             two[1][i] = step(d);

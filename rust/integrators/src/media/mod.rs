@@ -9,5 +9,6 @@ pub(super) mod path_numbers;
 pub(super) mod path_reuse;
 mod point_pairs;
 pub(super) mod ray_tracer;
+pub(super) mod scattering;
 pub(super) mod spectral_mis;
 mod transmittance;

@@ -25,6 +25,11 @@ impl FurtherNumbers {
         Self { sampler, taken: 0 }
     }
 
+    /// Return a sequence of its own for a branch of the path, of a number below 4096.
+    pub fn branch(&self, number: u32) -> Self {
+        Self { sampler: self.sampler.clone(), taken: self.taken.wrapping_add(number.wrapping_mul(1 << 20)) }
+    }
+
     /// Return the next number in [0, 1).
     pub fn next(&mut self) -> f64 {
         self.taken = self.taken.wrapping_add(1);

@@ -3,7 +3,7 @@
 use super::kernel::Kernel;
 use super::photon::StoredPhoton;
 use super::photon_tracing::PhotonIndex;
-use crate::transport::Visit;
+use crate::known_light::Visit;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::{Interaction, SurfaceInteraction};
 

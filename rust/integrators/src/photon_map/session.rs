@@ -9,10 +9,12 @@ use super::photon_tracing::{Maps, PhotonIndex, fly};
 use super::radius::NEIGHBOURS;
 use super::volume_estimate::room;
 use super::volume_photon::VolumeIndex;
+use crate::begin_paths::begin_with;
+use crate::known_light::{Gather, KnownLight, Visit};
 use crate::light_paths::Limits;
 use crate::nesting::MediumStack;
-use crate::transport::{Gather, MattLight, Settings, Visit};
-use crate::volumes::{Filled, KnownLight, Scattering, VolumetricPath};
+use crate::path_settings::PathSettings;
+use crate::volumes::{Filled, Scattering};
 use crate::{Job, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
@@ -60,18 +62,8 @@ impl Known<'_> {
     }
 }
 
-impl MattLight for Known<'_> {
-    fn radiance(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb {
-        self.matt(here, visit)
-    }
-
-    fn waves(&self, number: u32) -> Option<Waves> {
-        self.series.waves(number)
-    }
-}
-
 impl KnownLight for Known<'_> {
-    fn at_surface(&self, here: &SurfaceInteraction, visit: Visit) -> Rgb {
+    fn at_surface(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb {
         self.matt(here, visit)
     }
 
@@ -132,13 +124,8 @@ impl<'a> Mapped<'a> {
         let known = Arc::new(Known { scene: job.scene, estimate, among, series });
         let gather = Some(Gather { rays: gather, caustic: sending.caustic });
         let Limits { max_depth, roulette_depth } = limits;
-        let seen = if media {
-            let settings = VolumetricPath { gather, ..VolumetricPath::path(max_depth, roulette_depth) };
-            settings.begin_with(job, Arc::clone(&known) as Arc<dyn KnownLight + 'a>)
-        } else {
-            let settings = Settings { gather, ..Settings::path(max_depth, roulette_depth) };
-            settings.begin_with(job, Arc::clone(&known) as Arc<dyn MattLight + 'a>)
-        };
+        let settings = PathSettings { gather, ..PathSettings::path(max_depth, roulette_depth) };
+        let seen = begin_with(settings, job, Arc::clone(&known) as Arc<dyn KnownLight + 'a>);
         Self { job, emitters, known, seen }
     }
 }

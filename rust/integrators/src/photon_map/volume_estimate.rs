@@ -3,8 +3,8 @@
 use super::estimate::Estimate;
 use super::kernel::Kernel;
 use super::volume_photon::VolumeIndex;
+use crate::known_light::Visit;
 use crate::nesting::MediumStack;
-use crate::transport::Visit;
 use crate::volumes::{ClassifiedHit, Filled, Scattering, meet};
 use raywright_base::math::{DVec3, Frame, Hit, Ray};
 use raywright_base::sampling::{Sampler, warp};

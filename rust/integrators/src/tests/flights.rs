@@ -2,11 +2,10 @@
 
 use super::job;
 use super::wavefront::assert_equal_samples;
-use crate::transport::Settings;
-use crate::volumes::VolumetricPath;
+use crate::path_settings::PathSettings;
+use crate::volumes::OneByOne;
 use crate::wavefront::Wavefront;
 use raywright_base::math::DVec3;
-use raywright_base::workers::Cancel;
 use raywright_optics::{Dispersion, Dispersive, Phase, Rgb};
 use raywright_scene::fixtures::{rectangle, scene, shape};
 use raywright_scene::materials::{BoundaryMaterial, DielectricMaterial, Interior};
@@ -17,7 +16,7 @@ use std::sync::Arc;
 
 const DEPTH: u32 = 6;
 
-fn haze(scattering: [f64; 3], emission: f64) -> Arc<dyn Medium> {
+pub(super) fn haze(scattering: [f64; 3], emission: f64) -> Arc<dyn Medium> {
     let (absorption, scattering) = (Rgb::splat(0.1), Rgb::from_array(scattering));
     let haze = Homogeneous::new(absorption, scattering, Rgb::splat(emission), Phase::Rayleigh);
     Arc::new(haze.expect("a medium"))
@@ -28,19 +27,19 @@ fn ball(center: DVec3, radius: f64, material: impl Material + 'static) -> Shape 
     Shape { surface: sphere.into(), material: Arc::new(material), ..floor() }
 }
 
-fn smoke(center: DVec3, radius: f64, medium: &Arc<dyn Medium>) -> Shape {
+pub(super) fn smoke(center: DVec3, radius: f64, medium: &Arc<dyn Medium>) -> Shape {
     ball(center, radius, BoundaryMaterial { medium: Arc::clone(medium), priority: 0 })
 }
 
-fn glass(center: DVec3, radius: f64, interior: Interior) -> Shape {
+pub(super) fn glass(center: DVec3, radius: f64, interior: Interior) -> Shape {
     ball(center, radius, DielectricMaterial { interior, roughness: 0.0.into(), medium: None })
 }
 
-fn floor() -> Shape {
+pub(super) fn floor() -> Shape {
     shape(rectangle([-4.0, 0.0, -4.0], [0.0, 0.0, 8.0], [8.0, 0.0, 0.0]), [0.7, 0.5, 0.2], 0.0)
 }
 
-fn lamp() -> Shape {
+pub(super) fn lamp() -> Shape {
     shape(rectangle([-0.5, 3.0, -0.5], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]), [0.0; 3], 20.0)
 }
 
@@ -50,20 +49,16 @@ const FROM: DVec3 = DVec3::new(0.1, 1.1, 2.5);
 #[track_caller]
 fn assert_same(scene: &Scene) {
     assert!(Wavefront::takes(&job(scene)));
-    let stages = Wavefront::new(job(scene), Some(DEPTH), u32::MAX, false, None);
-    let one_by_one = if scene.plan().needs().media {
-        VolumetricPath::path(Some(DEPTH), u32::MAX).begin(job(scene))
-    } else {
-        Settings::path(Some(DEPTH), u32::MAX).begin_in_general(job(scene), &Cancel::default())
-    };
-    assert_equal_samples(&stages, &*one_by_one, FROM);
+    let settings = PathSettings::path(Some(DEPTH), u32::MAX);
+    let stages = Wavefront::new(job(scene), settings, None, None);
+    assert_equal_samples(&stages, &OneByOne::new(job(scene), settings, None), FROM);
 }
 
-fn of(shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> Scene {
+pub(super) fn of(shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> Scene {
     scene(SceneDescription { shapes, lights })
 }
 
-fn sky() -> Arc<dyn Light> {
+pub(super) fn sky() -> Arc<dyn Light> {
     Arc::new(ConstantEnvironment { radiance: Rgb::new(0.5, 0.7, 1.0) })
 }
 

@@ -175,12 +175,18 @@ fn brightness_is_in_proportion_and_never_nan() {
         over(metal(), lamps, vec![])
     };
     let path = Path { max_depth: Some(1), roulette_depth: 9, ..Path::default() };
-    let (expected, _) = radiance(&lit(1.0), &path, DOWN, 2000);
+    // What f32 cannot hold is followed path by path, by other numbers.
+    let count = 40_000;
+    let (expected, error) = radiance(&lit(1.0), &path, DOWN, count);
     for strength in [1e-280, 1e-30, 1e30, 1e280] {
-        let values = samples_of(&lit(strength), &path, DOWN, 2000);
+        let values = samples_of(&lit(strength), &path, DOWN, count);
         assert!(values.iter().all(|rgb| rgb.is_finite()));
-        let mean = values.iter().map(|rgb| rgb[1] / strength).sum::<f64>() / 2000.0;
-        // What f32 cannot hold is in f64, other stages are in f32.
-        assert!((mean / expected - 1.0).abs() < 4.0 * f64::from(f32::EPSILON), "{mean}, not {expected}");
+        let values = || values.iter().map(|rgb| rgb[1] / strength);
+        let mean = values().sum::<f64>() / f64::from(count);
+        let other = values().map(|value| (value - mean).powi(2)).sum::<f64>().sqrt() / f64::from(count);
+        let both = error.hypot(other);
+        // Four standard errors: a false alarm in 16,000.
+        assert!((mean - expected).abs() < 4.0 * both, "{mean}, not {expected} ± {both}");
+        assert!(both < 0.02 * expected, "{both} of {expected}");
     }
 }

@@ -98,13 +98,13 @@ fn whitted_follows_both_the_reflected_and_the_refracted_ray() {
     let ray = Ray::new(DVec3::new(0.1, 0.2, 2.0), DVec3::NEG_Z);
     let expected = 0.04 * 5.0 + 0.96 * 2.0 / 2.25;
     for value in samples_of(&window(), &Whitted::default(), ray, 10) {
-        assert!((value[1] / expected - 1.0).abs() < 1e-8, "{value}");
+        assert!((value[1] / expected - 1.0).abs() < f64::from(f32::EPSILON), "{value}");
     }
     assert_radiance(&window(), &Path::default(), ray, 60_000, expected);
     // Rays with a contribution below a tenth are not traced.
     let coarse = Whitted { contribution: 0.1, ..Whitted::default() };
     let (mean, _) = radiance(&window(), &coarse, ray, 10);
-    assert!((mean - 0.96 * 2.0 / 2.25).abs() < 1e-8, "{mean}");
+    assert!((mean / (0.96 * 2.0 / 2.25) - 1.0).abs() < f64::from(f32::EPSILON), "{mean}");
     // Nothing is traced at depth 0.
     assert_eq!(radiance(&window(), &Whitted { max_depth: 0, ..Whitted::default() }, ray, 10), (0.0, 0.0));
 }

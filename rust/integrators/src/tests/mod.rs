@@ -1,5 +1,6 @@
 //! Integrators against closed forms.
 
+mod branches;
 mod flights;
 mod glossy;
 mod kinds;

@@ -3,16 +3,16 @@
 use super::batch_executor::{Lane, lanes, together};
 use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
 use super::path_state::PathState;
-use super::precomputed_light::KnownLight;
-use super::scattering::Scattering;
-use super::{Onwards, VolumetricPath};
 use crate::dimensions::Dimensions;
+use crate::known_light::KnownLight;
 use crate::media::current_medium::Filled;
 use crate::media::equiangular::{PointLights, ScatteringSpan};
 use crate::media::path_numbers::{PathNumbers, depth};
 use crate::media::ray_tracer::TraceRays;
+use crate::media::scattering::Scattering;
 use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
+use crate::path_settings::{Follow, PathSettings};
 use crate::terminate_wavelengths::Parting;
 use crate::widths::widened;
 use crate::{CameraSample, Worker, roulette};
@@ -31,7 +31,7 @@ pub(super) const ONCE: (u32, u32) = (0, 1);
 /// A path tracer that is generic over ray intersection.
 #[derive(Clone, Copy)]
 pub(super) struct Walker<'a, A> {
-    pub(super) settings: VolumetricPath,
+    pub(super) settings: PathSettings,
     pub(super) scene: &'a Scene,
     /// Footprint of camera rays, if materials need it.
     footprint: Option<Footprint>,
@@ -50,7 +50,7 @@ pub(super) struct Walkers<'a> {
 
 impl<'a> Walkers<'a> {
     pub fn new(
-        settings: VolumetricPath,
+        settings: PathSettings,
         (scene, footprint): (&'a Scene, Footprint),
         points: &'a PointLights<'a>,
         known: Option<&'a dyn KnownLight>,
@@ -62,11 +62,6 @@ impl<'a> Walkers<'a> {
 }
 
 impl<'a, A: TraceRays> Walker<'a, A> {
-    /// Return whether paths continue in all scattered directions.
-    pub(super) fn follows_all(&self) -> bool {
-        self.settings.onwards == Onwards::All
-    }
-
     /// Return the radiance along a camera ray. `waiting` is storage for split paths.
     async fn follow(
         &self,
@@ -278,8 +273,10 @@ impl<'a, A: TraceRays> Walker<'a, A> {
                 }
             }
         }
-        if !self.follows_all() {
-            return self.split(path, &here, through, later.as_ref(), waiting);
+        match self.settings.follow {
+            Follow::DeltaLobes => return self.split(path, &here, through, later.as_ref(), waiting),
+            Follow::Nothing => return false,
+            Follow::All | Follow::MinDensity(_) => {}
         }
         if path.splits > 0.0 && arrival.is_known() || splits > 1.0 {
             self.look_about(path, &here, through, waiting, numbers);
@@ -289,7 +286,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         let u = numbers.two(choice + 1);
         let Some(next) = here.sample(&mut || numbers.one(choice), u) else { return false };
         // Precomputed light covers all but delta directions.
-        if arrival.is_known() && !next.is_delta() {
+        if arrival.is_known() && !next.is_delta() || next.pdf < self.settings.least_pdf() {
             return false;
         }
         path.splits = 1.0;
@@ -339,7 +336,8 @@ impl<'a, A: TraceRays> Walker<'a, A> {
             let dimensions = Dimensions::of(path.bounce, branch);
             let choice = dimensions.scattering_choice();
             let u = numbers.two(choice + 1);
-            let Some(mut next) = here.sample(&mut || numbers.one(choice), u) else { continue };
+            let drawn = here.sample(&mut || numbers.one(choice), u);
+            let Some(mut next) = drawn.filter(|next| next.pdf >= self.settings.least_pdf()) else { continue };
             let media = if next.is_through { through } else { path.media };
             next.pdf *= path.splits;
             next.weight /= path.splits;

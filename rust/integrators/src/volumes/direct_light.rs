@@ -9,7 +9,7 @@ use crate::media::ray_tracer::TraceRays;
 use crate::media::spectral_mis::Weights;
 use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
-use crate::transport::share;
+use crate::path_settings::stratum;
 use raywright_base::math::Ray;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
@@ -28,7 +28,7 @@ impl<A: TraceRays> Walker<'_, A> {
         cancel: &Cancel,
     ) -> Option<(LightSample, Rgb)> {
         let choice = numbers.ray.light_choice(draw.0);
-        let (choice, u) = (share(numbers.one(choice), draw), numbers.two(choice + 1));
+        let (choice, u) = (stratum(numbers.one(choice), draw), numbers.two(choice + 1));
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let receiver = LightSampleContext { waves: path.waves, ..here.light_context() };
         // MIS treats all samples as one with the density multiplied by their number.
@@ -61,10 +61,13 @@ impl<A: TraceRays> Walker<'_, A> {
         };
         let ray = Ray { time: path.ray.time, misses: [path.leaves, light.primitive], ..ray };
         // Sampling a direction never hits a point light or a directional light.
-        let by_chance = path.weights.drawn * if self.follows_all() { path.splits * pdf / light.pdf } else { 0.0 };
+        let is_followed = pdf >= self.settings.least_pdf();
+        let by_chance = path.weights.drawn * if is_followed { path.splits * pdf / light.pdf } else { 0.0 };
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
         let course = MediumTraversal { roulette: here.light_context().is_free(), ..self.course(path.waves) };
-        course.shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
+        if self.settings.shadows {
+            course.shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
+        }
         let asked = weights.asked.mean();
         Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))
     }

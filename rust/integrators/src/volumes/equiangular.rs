@@ -3,9 +3,9 @@
 use super::camera_paths::Walker;
 use super::medium_traversal::{OnTheWay, RaySegmentState};
 use super::path_state::PathState;
-use super::scattering::Scattering;
 use crate::media::path_numbers::PathNumbers;
 use crate::media::ray_tracer::TraceRays;
+use crate::media::scattering::Scattering;
 use crate::media::spectral_mis::Weights;
 use crate::mis_weight::power_heuristic;
 use raywright_base::workers::Cancel;

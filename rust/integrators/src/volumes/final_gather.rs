@@ -2,9 +2,9 @@
 
 use super::camera_paths::Walker;
 use super::path_state::PathState;
-use super::scattering::Scattering;
 use crate::is_matt;
-use crate::transport::Visit;
+use crate::known_light::Visit;
+use crate::media::scattering::Scattering;
 use raywright_optics::Rgb;
 use raywright_scene::SurfaceInteraction;
 
@@ -66,7 +66,7 @@ impl<A> Walker<'_, A> {
             return if gather.caustic && path.is_gathered { Arrival::IsLit } else { Arrival::GoesOn };
         }
         let rays = if path.is_gathered { 0 } else { gather.rays };
-        *light += path.weights.throughput() * known.at_surface(here, self.visit(path, number, rays > 0));
+        *light += path.weights.throughput() * known.at_surface(&here.by_ref(), self.visit(path, number, rays > 0));
         Arrival::IsKnown(rays)
     }
 }

@@ -1,11 +1,11 @@
 //! Medium traversal between scattering events.
 
-use super::scattering::Scattering;
 use crate::media::current_medium::{self, Filled};
 use crate::media::distance_sampling::{Collision, MediumSegment};
 use crate::media::hit_classification::{ClassifiedHit, come_to, straight};
 use crate::media::path_numbers::PathNumbers;
 use crate::media::ray_tracer::{ImmediateQueries, TraceRays};
+use crate::media::scattering::Scattering;
 use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::shadows::opacity;

@@ -6,10 +6,10 @@
 //! segment. σ is the mean over the wavelengths. The weights of all strategies still sum to 1, as all use the same
 //! densities. Contributions stay as bounded as without media, since their own transmittance is included.
 
-use super::scattering::Scattering;
 use crate::light_paths::{Arrived, Onward, onward_pdf};
 use crate::media::current_medium::{self, Filled};
 use crate::media::distance_sampling::Collision;
+use crate::media::scattering::Scattering;
 use crate::nesting::MediumStack;
 use raywright_base::math::{DVec3, Ray};
 use raywright_optics::spectra::Waves;

@@ -4,11 +4,12 @@ use super::guided::GuidedBlock;
 use super::queues::Flags;
 use super::shading_frames::ShadingFrames;
 use super::waves::WavesBlock;
+use super::ways::Way;
 use crate::Guide;
 use crate::terminate_wavelengths::Parting;
 use crate::widths::widened;
 use raywright_base::math::single::mask;
-use raywright_base::math::{DVec3, Hit, LANES, PathRays, SingleLanes, Vec3, VectorLanes, select};
+use raywright_base::math::{DVec3, Hit, LANES, PathRays, Ray, SingleLanes, Vec3, VectorLanes, select};
 use raywright_base::sampling::Pairs;
 use raywright_base::simd::{Level, loops};
 use raywright_optics::{Bsdf, BsdfSample, BsdfSampleLanes, Null, Rgb, RgbLanes};
@@ -28,6 +29,9 @@ pub(super) struct BsdfBlock<'a> {
     /// Where light is asked for, and where each of few lights is.
     pub asks: [bool; LANES],
     pub asks_each: [bool; LANES],
+    /// The densities from which on directions are followed, and the number of paths in these for each light sample.
+    pub least_pdf: [f64; LANES],
+    pub follows: [f64; LANES],
     /// Normals that light is drawn by: zero where a surface transmits.
     pub normal: SingleLanes,
     /// Of the paths, the ratio of radiance at their start to radiance here, and [`Flags`].
@@ -60,13 +64,16 @@ loops! {
         pdf: &[f64; LANES],
         counts: &[f64; LANES],
         asks: &[bool; LANES],
-        follows: f64,
+        follows: &[f64; LANES],
+        least_pdf: &[f64; LANES],
+        share: f64,
         arriving: &mut RgbLanes,
     ) {
         for i in 0..LANES {
-            let ratio = follows * pdf[i] / f64::from(lights.pdf[i]);
+            let followed = if pdf[i] >= least_pdf[i] { follows[i] } else { 0.0 };
+            let ratio = followed * pdf[i] / f64::from(lights.pdf[i]);
             let (t, light) = (throughput.get(i).as_dvec3(), lights.weight.get(i).as_dvec3());
-            let factor = counts[i] / (1.0 + ratio * ratio);
+            let factor = share * counts[i] / (1.0 + ratio * ratio);
             let all = scattered.get(i) * Rgb::from_array((t * light * factor).to_array());
             arriving.set(i, Rgb::select(asks[i] & (lights.pdf[i] > 0.0), all, Rgb::ZERO));
         }
@@ -106,7 +113,8 @@ impl Scattered {
 }
 
 impl<'a> BsdfBlock<'a> {
-    pub fn new(are_flat: bool, guide: Option<&'a Guide>) -> Self {
+    /// With directions that are followed from a density on.
+    pub fn new(are_flat: bool, guide: Option<&'a Guide>, least_pdf: f64) -> Self {
         Self {
             bsdf: BsdfLanes::default(),
             drawn: BsdfSampleLanes::NONE,
@@ -115,6 +123,8 @@ impl<'a> BsdfBlock<'a> {
             pdf: [0.0; LANES],
             asks: [false; LANES],
             asks_each: [false; LANES],
+            least_pdf: [least_pdf; LANES],
+            follows: [1.0; LANES],
             normal: SingleLanes::ZERO,
             scale: [1.0; LANES],
             flags: [0; LANES],
@@ -221,20 +231,31 @@ impl<'a> BsdfBlock<'a> {
         Some((reflectance, normal.as_vec3(), is_bent))
     }
 
-    /// What arrives of light that was drawn, in some lanes, if nothing blocks it. `follows` is 1, or 0 if paths end
-    /// there.
+    /// The interaction of a lane with its ray and hit, where more is known than of its block.
+    pub fn interaction(&self, lane: usize) -> Option<(&Ray, &Hit, SurfaceInteraction<&BsdfMix>)> {
+        self.frames.interaction(lane, self.bsdf.get(lane))
+    }
+
+    /// The BSDF of a lane.
+    pub fn get(&self, lane: usize) -> &BsdfMix {
+        self.bsdf.get(lane)
+    }
+
+    /// What arrives of light that was drawn, in some lanes, if nothing blocks it: a share of it. `is_found` tells
+    /// whether paths find it by chance too.
     pub fn reflect(
         &mut self,
         level: Level,
         surfaces: &SurfaceBlock,
         lights: &LightBlock,
         throughput: &SingleLanes,
-        (asks, follows): (&[bool; LANES], f64),
+        (asks, is_found, share): (&[bool; LANES], bool, f64),
         arriving: &mut RgbLanes,
     ) {
         let (mut wi, mut scattered) = (VectorLanes::ZERO, RgbLanes::ZERO);
         let (mut pdf, mut counts) = ([0.0; LANES], [0.0; LANES]);
         self.frames.look(level, surfaces, &lights.direction, &mut wi, &mut counts);
+        let follows = if is_found { &self.follows } else { &[0.0; LANES] };
         let asks = std::array::from_fn(|lane| asks[lane] && lights.pdf[lane] > 0.0 && counts[lane] > 0.0);
         self.bsdf.evaluate(level, &asks, &self.frames.wo, &wi, &mut scattered, &mut pdf);
         if self.guided.is_here() {
@@ -243,24 +264,36 @@ impl<'a> BsdfBlock<'a> {
                 pdf[lane] = self.guided.density(level, lane, pdf[lane], direction);
             }
         }
-        weigh(level, throughput, lights, &scattered, &pdf, &counts, &asks, follows, arriving);
+        weigh(level, throughput, lights, &scattered, &pdf, &counts, &asks, follows, &self.least_pdf, share, arriving);
         self.pdf = pdf;
     }
 
-    /// Stage: paths are scattered.
+    /// The density of following a direction, by its density of scattering, over that of its draw for light.
+    pub fn ratio(&self, lane: usize, pdf: f64, drawn: f32) -> f32 {
+        let is_followed = pdf >= self.least_pdf[lane] && drawn > 0.0;
+        if is_followed { (self.follows[lane] * pdf / f64::from(drawn)) as f32 } else { 0.0 }
+    }
+
+    /// Stage: paths are scattered, some into delta lobes that are given.
     pub fn sample(
         &mut self,
         level: Level,
         surfaces: &SurfaceBlock,
         throughput: &SingleLanes,
         (choice, u): (&mut [f64; LANES], &Pairs),
+        way: Option<&Way>,
         next: &mut Scattered,
     ) {
-        let goes = std::array::from_fn(|lane| lane < surfaces.count && !self.guided.ends[lane]);
+        let goes = std::array::from_fn(|lane| {
+            lane < surfaces.count && !self.guided.ends[lane] && way.is_none_or(|way| way.is_drawn[lane])
+        });
         if self.guided.is_here() {
             self.sample_guided(level, surfaces, &goes, (choice, u));
         } else {
             self.bsdf.sample(level, &goes, &self.frames.wo, (choice, u), &mut self.drawn);
+        }
+        if let Some(way) = way {
+            way.leave(&self.least_pdf, &mut self.drawn);
         }
         (next.scale, next.flags) = (self.scale, self.flags);
         let (drawn, mut counts) = (&self.drawn, [0.0; LANES]);
@@ -289,9 +322,19 @@ impl<'a> BsdfBlock<'a> {
         self.flags[lane] & Flags::HAS_GAMUT_EXCESS != 0
     }
 
+    /// Whether a direction was drawn in a lane.
+    pub fn goes_on(&self, lane: usize) -> bool {
+        self.drawn.pdf[lane] > 0.0
+    }
+
+    /// Whether the path of a lane goes on in a single direction.
+    pub fn is_single(&self, lane: usize) -> bool {
+        self.drawn.pdf[lane] == f64::INFINITY
+    }
+
     /// Whether the path of a lane goes on behind its surface.
     pub fn is_through(&self, lane: usize) -> bool {
-        self.drawn.is_through[lane]
+        self.goes_on(lane) && self.drawn.is_through[lane]
     }
 
     /// The same where surfaces have guides: some paths aim, the others are scattered.

@@ -2,19 +2,22 @@
 
 use super::matte;
 use super::queues::PathLanes;
+use super::ways::Way;
 use super::worker::{WavefrontWorker, bits, own};
 use crate::dimensions::Dimensions;
+use crate::path_settings::stratum;
 use crate::resampling::{ResampledLanes, resample};
 use raywright_base::math::{LANES, Ray, SingleLanes, VectorLanes};
 use raywright_base::sampling::SamplerLanes;
 use raywright_base::timing::{Part, timed};
-use raywright_optics::RgbLanes;
+use raywright_optics::{Rgb, RgbLanes};
 use raywright_scene::{LightBlock, ReceiverBlock};
 
 impl WavefrontWorker<'_> {
     /// Takes sixteen paths from surfaces of any kind to their next rays.
-    pub(super) fn leave_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32) {
+    pub(super) fn leave_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32, radiance: &mut [Rgb]) {
         timed(Part::Scattering, || self.evaluate_materials(numbers, bounce));
+        self.look_up_light(bounce, radiance);
         if bounce < 2 && self.sharing.is_some() {
             for lane in 0..self.block.surfaces.count {
                 if let Some((reflectance, normal, is_bent)) = self.block.bsdf.matte(&self.block.surfaces, lane) {
@@ -29,10 +32,13 @@ impl WavefrontWorker<'_> {
             });
         }
         if !self.scene.lights().is_dark() && self.block.bsdf.asks.contains(&true) {
-            timed(Part::Light, || self.ask_for_light_of_any(numbers, bounce));
+            let count = self.light_samples(bounce);
+            timed(Part::Light, || {
+                (0..count).for_each(|number| self.ask_for_light_of_any(numbers, bounce, (number, count)))
+            });
         }
         if self.follows {
-            timed(Part::Continuation, || self.scatter_from_any(numbers, bounce, samples));
+            timed(Part::Continuation, || self.scatter_in_all_ways(numbers, bounce, samples));
         }
     }
 
@@ -56,16 +62,16 @@ impl WavefrontWorker<'_> {
     }
 
     /// Stage: light is drawn for sixteen surfaces of any kind, and its shadow rays are queued: of one light, or where
-    /// surfaces are glossy and lights few, of each, and of these draws one stands for all.
-    fn ask_for_light_of_any(&mut self, numbers: &SamplerLanes, bounce: u32) {
+    /// surfaces are glossy and lights few, of each, and of these draws one stands for all. It is one of several samples,
+    /// stratified over the lights.
+    fn ask_for_light_of_any(&mut self, numbers: &SamplerLanes, bounce: u32, (number, count): (u32, u32)) {
+        let dimensions = self.dimensions(bounce);
         let (level, block) = (self.level, &mut *self.block);
-        let is_followed = if self.follows { 1.0 } else { 0.0 };
         // Among media it is weighed when it arrives.
-        let follows = if self.extra.media { 0.0 } else { is_followed };
+        let (is_found, share) = (self.follows && !self.extra.media, 1.0 / f64::from(count));
         let (lights, geometry) = (self.scene.lights(), self.scene.geometry());
         let (mut choice, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
-        let dimensions = Dimensions::of(bounce, 0);
-        numbers.choice_and_pair(level, dimensions.light_choice(0), &mut choice, &mut u);
+        let of = |number: u32| dimensions.map(|dimensions| dimensions.light_choice(number));
         let asks = block.bsdf.asks;
         let asks_each: [bool; LANES] = std::array::from_fn(|lane| asks[lane] && block.bsdf.asks_each[lane]);
         let asks_one: [bool; LANES] = std::array::from_fn(|lane| asks[lane] && !asks_each[lane]);
@@ -74,22 +80,27 @@ impl WavefrontWorker<'_> {
         let receivers = ReceiverBlock { surfaces, normal: &normal, waves: &block.spectral.waves };
         let mut arriving = RgbLanes::ZERO;
         if asks_one.contains(&true) {
+            numbers.choices_and_pairs(level, &of(number), &mut choice, &mut u);
+            let choice = choice.map(|choice| stratum(choice, (number, count)));
             lights.draw_block(level, geometry, &receivers, &choice, &u, &mut block.lights);
-            block.bsdf.reflect(level, surfaces, &block.lights, &block.throughput, (&asks_one, follows), &mut arriving);
-            for lane in (0..LANES).filter(|&lane| asks_one[lane] && block.lights.pdf[lane] > 0.0) {
-                let ratio = is_followed * block.bsdf.pdf[lane] / f64::from(block.lights.pdf[lane]);
-                block.media.ratio[lane] = ratio as f32;
+            let asks = (&asks_one, is_found, share);
+            block.bsdf.reflect(level, surfaces, &block.lights, &block.throughput, asks, &mut arriving);
+            for lane in (0..LANES).filter(|&lane| asks_one[lane]) {
+                block.media.ratio[lane] = block.bsdf.ratio(lane, block.bsdf.pdf[lane], block.lights.pdf[lane]);
             }
         }
         if asks_each.contains(&true) {
-            let mut all = ResampledLanes::new(choice);
+            let first = number.wrapping_mul(lights.few());
+            numbers.choices_and_pairs(level, &of(first), &mut choice, &mut u);
+            let mut all = ResampledLanes::new(choice.map(|choice| stratum(choice, (number, count))));
             self.each.resize(lights.few() as usize, LightBlock::NONE);
             self.each_pdf.resize(self.each.len(), [0.0; LANES]);
             for (one, drawn) in (0u32..).zip(&mut self.each) {
                 let mut of_one = RgbLanes::ZERO;
-                numbers.choice_and_pair(level, dimensions.light_choice(one), &mut choice, &mut u);
+                numbers.choices_and_pairs(level, &of(first.wrapping_add(one)), &mut choice, &mut u);
                 lights.draw_one_block(one, level, geometry, &receivers, &choice, &u, drawn);
-                block.bsdf.reflect(level, surfaces, drawn, &block.throughput, (&asks_each, follows), &mut of_one);
+                let asks = (&asks_each, is_found, share);
+                block.bsdf.reflect(level, surfaces, drawn, &block.throughput, asks, &mut of_one);
                 resample(level, &mut all, one.into(), &of_one);
                 self.each_pdf[one as usize] = block.bsdf.pdf;
             }
@@ -97,10 +108,13 @@ impl WavefrontWorker<'_> {
                 if let Some((one, brings)) = all.kept(lane) {
                     block.lights.copy(lane, &self.each[one]);
                     arriving.set(lane, brings);
-                    block.media.ratio[lane] =
-                        (is_followed * self.each_pdf[one][lane] / f64::from(self.each[one].pdf[lane])) as f32;
+                    let (pdf, drawn) = (self.each_pdf[one][lane], self.each[one].pdf[lane]);
+                    block.media.ratio[lane] = block.bsdf.ratio(lane, pdf, drawn);
                 }
             }
+        }
+        if !self.follows {
+            block.media.ratio = [0.0; LANES];
         }
         let (mut origin, mut brings, mut lit) = (VectorLanes::ZERO, SingleLanes::ZERO, 0u32);
         for lane in 0..surfaces.count {
@@ -116,17 +130,20 @@ impl WavefrontWorker<'_> {
         self.block.queue_shadows(level, lit, (&origin, &brings), &mut self.shadows);
     }
 
-    /// Stage: sixteen paths go on from surfaces of any kind, unless roulette ends them.
-    fn scatter_from_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32) {
-        let plays = self.plays(bounce);
+    /// Stage: sixteen paths go on from surfaces of any kind, in one of several ways if there are any, unless roulette
+    /// ends them.
+    pub(super) fn scatter_from_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32, way: Option<&Way>) {
+        let (plays, dimensions) = (self.plays(bounce), self.dimensions(bounce));
         let (level, block) = (self.level, &mut *self.block);
         let (mut choice, mut single) = ([0.0; LANES], [[0.0; LANES]; 2]);
-        let dimensions = Dimensions::of(bounce, 0);
-        numbers.choice_and_pair(level, dimensions.scattering_choice(), &mut choice, &mut single);
+        numbers.choices_and_pairs(level, &dimensions.map(Dimensions::scattering_choice), &mut choice, &mut single);
         let u = single.map(|u| u.map(f64::from));
         let next = &mut block.next;
-        block.bsdf.sample(level, &block.surfaces, &block.throughput, (&mut choice, &u), next);
+        block.bsdf.sample(level, &block.surfaces, &block.throughput, (&mut choice, &u), way, next);
         self.part_wavelengths();
+        if way.is_some() {
+            self.weigh_ways(bounce);
+        }
         let block = &mut *self.block;
         if let Some(media) = &mut self.media {
             for lane in (0..block.surfaces.count).filter(|&lane| block.bsdf.is_through(lane)) {
@@ -136,7 +153,7 @@ impl WavefrontWorker<'_> {
         let (guided, next) = (&block.bsdf.guided, &mut block.next);
         if plays {
             let mut chance = [0.0; LANES];
-            numbers.one(level, &[dimensions.roulette(); LANES], &mut chance);
+            numbers.one(level, &dimensions.map(Dimensions::roulette), &mut chance);
             let before = next.throughput;
             // No light is lost where it is small only because of the index of refraction, or because paths were aimed.
             let scale = std::array::from_fn(|lane| next.scale[lane] * guided.aimed[lane]);

@@ -22,6 +22,11 @@ fn waves_of(queue: &PathQueue, waves: &[PathWaves], path: usize) -> Option<Waves
     waves.get(queue.sample[path] as usize).map(|waves| waves.now)
 }
 
+/// Whether what shines at the end of a path was known where that became a final gather ray.
+fn is_known(queue: &PathQueue, path: usize) -> bool {
+    queue.flags.get(path).is_some_and(|flags| flags & Flags::IS_LIT != 0)
+}
+
 /// Whether each of few lights was asked where a path set out.
 fn asked_each(queue: &PathQueue, path: usize) -> bool {
     queue.flags.get(path).is_some_and(|flags| flags & Flags::ASKED_EACH != 0)
@@ -43,6 +48,9 @@ pub(super) fn add_outside(
     let constant = lights.constant_sky();
     for &i in which {
         let i = i as usize;
+        if is_known(queue, i) {
+            continue;
+        }
         let pdf = queue.pdf[i];
         let [x, y, z] = queue.normal.each_ref().map(|column| column.get(i).copied().unwrap_or(0.0));
         if let Some(arriving) = constant.filter(|_| pdf == f32::INFINITY || x * x + y * y + z * z > 0.0) {
@@ -82,7 +90,7 @@ pub(super) fn add_emitted(
     for lane in 0..surfaces.count {
         let shape = surfaces.shape[lane];
         let is_instance = !hits.is_empty() && scene.geometry().instances_of(shape).is_some();
-        if !(is_instance || lights.shines(shape)) {
+        if !(is_instance || lights.shines(shape)) || is_known(queue, surfaces.index[lane] as usize) {
             continue;
         }
         let cosine = f64::from(surfaces.cosine[lane]) * if surfaces.is_front[lane] == 0 { -1.0 } else { 1.0 };

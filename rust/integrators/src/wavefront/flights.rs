@@ -158,7 +158,6 @@ impl FlightQueue {
         }
         (rays.t_max[to], rays.misses[to]) = (t_max, misses);
         if !rays.time.is_empty() {
-            rays.time.resize(rays.misses.len(), 0.0);
             rays.time[to] = time;
         }
         rays.len += 1;

@@ -1,7 +1,7 @@
 //! The stages of stochastic alpha masks: paths pass surfaces that are not there for them, and shadow rays are dimmed.
 
 use super::masks::Masks;
-use super::worker::WavefrontWorker;
+use super::worker::{WavefrontWorker, own};
 use crate::dimensions::Dimensions;
 use crate::shadows::opacity;
 use raywright_base::math::{Hit, LANES, Ray};
@@ -20,13 +20,13 @@ impl WavefrontWorker<'_> {
         on_way.clear();
         on_way.extend(which.filter(|&(_, &primitive)| may_pass(primitive)).map(|(i, _)| (i, 0.0)));
         for some in on_way.chunks_mut(LANES) {
-            let (mut own, mut chance) = ([0; LANES], [0.0; LANES]);
-            for (own, &(i, _)) in own.iter_mut().zip(&*some) {
-                let sample = queue.sample[i as usize];
-                *own = sample.min(sample.wrapping_sub(samples));
+            let (mut which, mut chance) = ([0; LANES], [0.0; LANES]);
+            for (to, &(i, _)) in which.iter_mut().zip(&*some) {
+                *to = own(queue.sample[i as usize], samples);
             }
-            columns.gather(&own, numbers);
-            numbers.one(self.level, &[Dimensions::of(bounce, 0).mask(); LANES], &mut chance);
+            columns.gather(&which, numbers);
+            let branch = |sample: u32| self.branches.as_ref().map_or(0, |branches| branches.number(sample));
+            numbers.one(self.level, &which.map(|sample| Dimensions::of(bounce, branch(sample)).mask()), &mut chance);
             some.iter_mut().zip(chance).for_each(|(path, chance)| path.1 = chance);
         }
         rays.clear();

@@ -37,7 +37,7 @@ impl WavefrontWorker<'_> {
                     (at.phase, here),
                     (throughput, drawn),
                     &flights.stacks.get(number).media,
-                    self.max_depth.map(|_| bounce),
+                    self.settings.max_depth.map(|_| bounce),
                 );
                 media.paths[sample as usize].is_first = vertices.first.is_some();
                 firsts |= u32::from(vertices.first.is_some()) << lane;

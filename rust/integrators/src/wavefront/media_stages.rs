@@ -152,8 +152,13 @@ impl WavefrontWorker<'_> {
             let same = last.filter(|(before, _)| before.interiors() == stack.interiors());
             let number = same.map_or_else(|| flights.stacks.number(stack), |(_, number)| number);
             last = Some((stack, number));
-            // The first wavelength is the hero: dispersion ends all but that. Of red, green and blue it is any.
-            let hero = if self.waves.is_empty() { ((sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2) } else { 0 };
+            // The first wavelength is the hero: dispersion ends all but that. Of red, green and blue it is any, and of
+            // the wavelengths of known light, which all samples of a number share.
+            let hero = match (self.waves.is_empty(), self.known.is_some(), media.further.last_mut()) {
+                (true, ..) => ((sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2),
+                (false, true, Some(further)) => further.hero(),
+                _ => 0,
+            };
             media.paths.push(PathMedia::new(number, hero));
         }
     }
@@ -170,7 +175,7 @@ impl WavefrontWorker<'_> {
         let (Some(media), Some(flights), Some(samplers)) = (&mut self.media, &mut self.flights, &self.samplers) else {
             return;
         };
-        let is_lit = !media.points.is_empty() && self.max_depth.is_none_or(|depth| bounce < depth);
+        let is_lit = !media.points.is_empty() && self.settings.max_depth.is_none_or(|depth| bounce < depth);
         media.begin(self.paths[0].rays.len);
         let mut paths = PathFlights {
             scene: self.scene,

@@ -3,6 +3,8 @@
 //!
 //! A stage reads columns and writes columns. No stage knows the next; [`worker`] lists them.
 
+mod branch_stages;
+mod branches;
 mod bsdf_block;
 mod bsdf_stages;
 mod direct_light;
@@ -25,8 +27,11 @@ mod shading_frames;
 mod transmittance_stages;
 mod waves;
 mod waves_stages;
+mod ways;
 mod worker;
 
+use super::known_light::KnownLight;
+use super::path_settings::PathSettings;
 use super::{Guide, Job, Session, Worker};
 use raywright_scene::Footprint;
 use std::sync::Arc;
@@ -35,52 +40,32 @@ use worker::WavefrontWorker;
 /// Path tracing by stages.
 pub(super) struct Wavefront<'a> {
     job: Job<'a>,
-    max_depth: Option<u32>,
-    roulette_depth: u32,
-    shares: bool,
-    follows: bool,
-    shadows: bool,
-    /// Whether media scatter light, or only dim it.
-    scatters: bool,
+    settings: PathSettings,
     /// Where light comes from by way of what is sharp, if paths are guided and there is any.
     guide: Option<Arc<Guide>>,
+    /// What is known of light at matte surfaces and in media, if anything is.
+    known: Option<Arc<dyn KnownLight + 'a>>,
 }
 
 /// Radiances that f32 holds, with the squares of what follows from them.
 const RADIANCES: std::ops::Range<f64> = 1e-15..1e15;
 
 impl<'a> Wavefront<'a> {
-    /// Path tracing of a picture to a depth, with Russian roulette from a depth on. Paths of a group may share, and be
-    /// guided.
+    /// Paths of a picture, which may be guided, and end where light is known.
     pub fn new(
         job: Job<'a>,
-        max_depth: Option<u32>,
-        roulette_depth: u32,
-        shares: bool,
+        settings: PathSettings,
         guide: Option<Arc<Guide>>,
+        known: Option<Arc<dyn KnownLight + 'a>>,
     ) -> Self {
-        Self { job, max_depth, roulette_depth, shares, follows: true, shadows: true, scatters: true, guide }
-    }
-
-    /// Paths to a depth that media only dim.
-    pub fn dimmed(job: Job<'a>, max_depth: u32) -> Self {
-        Self { scatters: false, ..Self::new(job, Some(max_depth), u32::MAX, false, None) }
-    }
-
-    /// Direct light that is drawn, without paths that go on, and with shadows or without.
-    pub fn of_drawn_light(job: Job<'a>, shadows: bool) -> Self {
-        let (shares, follows) = (false, false);
-        Self { shares, follows, shadows, ..Self::dimmed(job, 1) }
+        Self { job, settings, guide, known }
     }
 
     /// Whether a picture is of a scene that has what stages know, and nothing else, seen so wide that f32 tells pixels
     /// apart.
     pub fn takes(job: &Job<'_>) -> bool {
-        let scene = job.scene;
-        let plan = scene.plan();
-        tells_pixels_apart(job)
-            && !plan.normals_as_given()
-            && scene.lights().radiances().all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
+        let mut radiances = job.scene.lights().radiances();
+        tells_pixels_apart(job) && radiances.all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
     }
 }
 
@@ -98,12 +83,6 @@ fn tells_pixels_apart(job: &Job<'_>) -> bool {
 
 impl Session for Wavefront<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        let depths = (self.max_depth, self.roulette_depth);
-        Box::new(WavefrontWorker::new(
-            &self.job,
-            depths,
-            (self.shares, self.follows, self.shadows, self.scatters),
-            self.guide.as_deref(),
-        ))
+        Box::new(WavefrontWorker::new(&self.job, self.settings, self.guide.as_deref(), self.known.as_deref()))
     }
 }

@@ -5,7 +5,9 @@ use super::media::MediumScattering;
 use super::queues::{Flags, PathLanes};
 use super::worker::{WavefrontWorker, bits, own};
 use crate::dimensions::Dimensions;
+use crate::known_light::Visit;
 use crate::media::path_reuse::SecondVertex;
+use crate::media::scattering::Scattering;
 use crate::roulette;
 use crate::widths::widened;
 use raywright_base::math::{LANES, PathRays, Ray, SingleLanes, Vec3};
@@ -16,7 +18,10 @@ use raywright_scene::{Footprint, ReceiverBlock};
 
 impl WavefrontWorker<'_> {
     /// Takes all paths from scattering events in media to their next rays.
-    pub(super) fn leave_media(&mut self, numbers: &mut SamplerLanes, bounce: u32, samples: u32) {
+    pub(super) fn leave_media(&mut self, numbers: &mut SamplerLanes, bounce: u32, samples: u32, radiance: &mut [Rgb]) {
+        if self.known.is_some() {
+            return self.look_up_light_in_media(bounce, radiance);
+        }
         let Some(scattered) = self.media.as_mut().map(|media| std::mem::take(&mut media.scattered)) else { return };
         for (some, number) in scattered.chunks(LANES).zip((0..).step_by(LANES)) {
             self.meet_medium(some);
@@ -35,6 +40,32 @@ impl WavefrontWorker<'_> {
         }
         if let Some(media) = &mut self.media {
             media.scattered = scattered;
+        }
+    }
+
+    /// Stage: paths that a medium scatters end where light is known.
+    fn look_up_light_in_media(&mut self, bounce: u32, radiance: &mut [Rgb]) {
+        let (Some(media), Some(flights), Some(samplers), Some(known)) =
+            (&self.media, &self.flights, &self.samplers, self.known)
+        else {
+            return;
+        };
+        let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(bounce + 1));
+        let queue = &self.paths[0];
+        for &MediumScattering { path, position, before, phase, .. } in &media.scattered {
+            let (i, sample) = (path as usize, queue.sample[path as usize] as usize);
+            let flags = queue.flags[i];
+            let visit = Visit {
+                number: samplers.get(sample).number(),
+                looks_about: false,
+                has_gamut_excess: flags & Flags::HAS_GAMUT_EXCESS != 0,
+                single: flags & Flags::SINGLE != 0,
+                bounces,
+            };
+            let stack = &flights.stacks.get(media.paths[sample].media).media;
+            let throughput = Rgb::from_array(queue.throughput.each_ref().map(|column| column[i].into()));
+            let here = Scattering { position, before, phase };
+            radiance[sample] += throughput * known.among(&here, stack, queue.rays.time(i), visit);
         }
     }
 

@@ -42,6 +42,10 @@ impl Flags {
     pub const HAS_GAMUT_EXCESS: u32 = 2;
     /// Dispersion has ended all of its wavelengths but one.
     pub const SINGLE: u32 = 4;
+    /// It is a final gather ray, or goes on from one.
+    pub const IS_GATHERED: u32 = 8;
+    /// What shines on it was known where it became a final gather ray.
+    pub const IS_LIT: u32 = 16;
 }
 
 /// Which of the columns that few scenes need a queue has.
@@ -111,6 +115,13 @@ fn three(room: usize) -> [Vec<f32>; 3] {
     [0; 3].map(|_| vec![0.0; room])
 }
 
+/// Makes a column longer, if there is one.
+fn lengthen<T: Copy + Default>(column: &mut Vec<T>, room: usize) {
+    if !column.is_empty() {
+        column.resize(room, T::default());
+    }
+}
+
 impl PathQueue {
     /// Room for so many paths.
     pub fn with_room(most: usize, extra: Extra) -> Self {
@@ -131,10 +142,31 @@ impl PathQueue {
         }
     }
 
+    /// Makes room for so many paths, and keeps those that are there.
+    #[inline]
+    pub fn make_room(&mut self, most: usize) {
+        if self.sample.len() < most + LANES {
+            self.grow(2 * (most + LANES));
+        }
+    }
+
+    #[cold]
+    fn grow(&mut self, room: usize) {
+        self.rays.make_room(room);
+        self.vertex.iter_mut().for_each(|column| lengthen(column, room));
+        self.throughput.iter_mut().chain(&mut self.normal).for_each(|column| lengthen(column, room));
+        for column in [&mut self.pdf, &mut self.scale, &mut self.aimed, &mut self.width, &mut self.spread] {
+            lengthen(column, room);
+        }
+        lengthen(&mut self.sample, room);
+        lengthen(&mut self.flags, room);
+    }
+
     /// Appends the paths of the lanes in a mask.
     #[inline]
     pub fn push(&mut self, level: Level, mask: u32, paths: &PathLanes<'_>) {
         let at = self.rays.len;
+        self.make_room(at);
         let [ox, oy, oz] = &mut self.rays.origin;
         let [dx, dy, dz] = &mut self.rays.direction;
         let [r, g, b] = &mut self.throughput;
@@ -224,10 +256,21 @@ impl ShadowQueue {
         Self { rays, arriving: three(room), sample: vec![0; room], media, ratio }
     }
 
+    #[cold]
+    fn grow(&mut self, room: usize) {
+        self.rays.make_room(room);
+        self.arriving.iter_mut().chain([&mut self.ratio]).for_each(|column| lengthen(column, room));
+        lengthen(&mut self.sample, room);
+        lengthen(&mut self.media, room);
+    }
+
     /// Appends the rays of the lanes in a mask.
     #[inline]
     pub fn push(&mut self, level: Level, mask: u32, shadows: &ShadowLanes<'_>) {
         let at = self.rays.len;
+        if self.sample.len() < at + LANES {
+            self.grow(2 * (at + LANES));
+        }
         let [ox, oy, oz] = &mut self.rays.origin;
         let [dx, dy, dz] = &mut self.rays.direction;
         let [r, g, b] = &mut self.arriving;

@@ -108,6 +108,13 @@ loops! {
     }
 }
 
+impl Interactions {
+    /// Those of shading normals that are used as given, which loops over lanes do not know.
+    fn as_given(&self) -> impl Iterator<Item = (usize, SurfaceInteraction<Null>)> {
+        (0..LANES).filter(|&lane| self.lanes.is_as_given(lane)).map(|lane| (lane, self.lanes.get(lane, Null)))
+    }
+}
+
 impl ShadingFrames {
     /// Of surfaces without shading normals, or of any.
     pub fn new(are_flat: bool) -> Self {
@@ -143,6 +150,11 @@ impl ShadingFrames {
         Some(here.into_bsdf())
     }
 
+    /// The interaction of a lane by a BSDF, with its ray and hit, where more is known than of its block.
+    pub fn interaction<B: Bsdf>(&self, lane: usize, bsdf: B) -> Option<(&Ray, &Hit, SurfaceInteraction<B>)> {
+        self.interactions.as_ref().map(|all| (&all.rays[lane], &all.hits[lane], all.lanes.get(lane, bsdf)))
+    }
+
     /// The surface of a lane, where more is known than of its block.
     pub fn surface(&self, lane: usize) -> Option<SurfacePoint> {
         self.interactions.as_ref().map(|all| all.surfaces.get(lane))
@@ -174,7 +186,12 @@ impl ShadingFrames {
         counts: &mut [f64; LANES],
     ) {
         match &self.interactions {
-            Some(all) => see(level, &all.lanes, direction, wi, counts),
+            Some(all) => {
+                see(level, &all.lanes, direction, wi, counts);
+                for (lane, here) in all.as_given() {
+                    counts[lane] = here.seen_from(unit(direction.get(lane).as_dvec3())).1;
+                }
+            }
             None => {
                 turn(level, surfaces, direction, wi);
                 *counts = [1.0; LANES];
@@ -192,7 +209,12 @@ impl ShadingFrames {
         counts: &mut [f64; LANES],
     ) {
         match &self.interactions {
-            Some(all) => go(level, &all.lanes, wi, pdf, direction, counts),
+            Some(all) => {
+                go(level, &all.lanes, wi, pdf, direction, counts);
+                for (lane, here) in all.as_given() {
+                    counts[lane] = here.goes_to(wi.get(lane), pdf[lane] == f64::INFINITY).1;
+                }
+            }
             None => {
                 turn_out(level, surfaces, wi, direction);
                 *counts = [1.0; LANES];
@@ -203,7 +225,7 @@ impl ShadingFrames {
     /// A direction of the frame of a lane in the world.
     pub fn to_world(&self, surfaces: &SurfaceBlock, lane: usize, wi: DVec3) -> DVec3 {
         match &self.interactions {
-            Some(all) => all.lanes.faded(lane, Null).goes_to(wi, false).0,
+            Some(all) => all.lanes.get(lane, Null).goes_to(wi, false).0,
             None => frame(surfaces, lane).to_world(wi),
         }
     }
@@ -211,7 +233,7 @@ impl ShadingFrames {
     /// A direction in the frame of a lane, and how much light from there counts.
     pub fn to_local(&self, surfaces: &SurfaceBlock, lane: usize, direction: DVec3) -> (DVec3, f64) {
         match &self.interactions {
-            Some(all) => all.lanes.faded(lane, Null).seen_from(direction),
+            Some(all) => all.lanes.get(lane, Null).seen_from(direction),
             None => (frame(surfaces, lane).to_local(direction), 1.0),
         }
     }

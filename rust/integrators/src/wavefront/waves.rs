@@ -2,6 +2,7 @@
 
 use crate::CameraSamples;
 use crate::dimensions::Dimensions;
+use crate::known_light::KnownLight;
 use crate::terminate_wavelengths::Parting;
 use raywright_base::math::LANES;
 use raywright_optics::spectra::Waves;
@@ -34,12 +35,19 @@ impl WavesBlock {
         Self { waves: [None; LANES], around: [Dispersive::NONE; LANES], parting: [None; LANES], ends: [false; LANES] };
 }
 
-/// Wavelengths of some of the samples, in a scene that needs them.
-pub(super) fn draw(samples: &CameraSamples, some: Range<usize>, waves: &mut Vec<PathWaves>) {
+/// Wavelengths of some of the samples, in a scene that needs them: those of known light, if there is any.
+pub(super) fn draw(
+    samples: &CameraSamples,
+    some: Range<usize>,
+    known: Option<&dyn KnownLight>,
+    waves: &mut Vec<PathWaves>,
+) {
     let Some(samplers) = &samples.samplers else { return };
     waves.clear();
     waves.extend(some.map(|i| {
-        let first = Waves::of(samplers.get(i).one(Dimensions::WAVES));
+        let mut sampler = samplers.get(i);
+        let of_known = known.and_then(|known| known.waves(sampler.number()));
+        let first = of_known.unwrap_or_else(|| Waves::of(sampler.one(Dimensions::WAVES)));
         PathWaves { first, now: first }
     }));
 }

@@ -36,7 +36,8 @@ impl WavefrontWorker<'_> {
     pub(super) fn part_wavelengths(&mut self) {
         let count = if self.waves.is_empty() { 0 } else { self.block.surfaces.count };
         for lane in 0..count {
-            let Some(parting) = self.block.spectral.parting[lane] else { continue };
+            let parting = self.block.spectral.parting[lane].filter(|_| self.block.bsdf.goes_on(lane));
+            let Some(parting) = parting else { continue };
             let throughput = self.block.next.throughput.get(lane);
             let parted = if self.block.bsdf.is_through(lane) {
                 self.end_all_but_hero(lane, throughput)
@@ -63,14 +64,15 @@ impl WavefrontWorker<'_> {
         let ended = Waves::ended(Rgb::from_array(throughput.as_dvec3().to_array()));
         let drawn =
             self.media.as_mut().map_or(Rgb::ONE, |media| std::mem::replace(&mut media.paths[sample].drawn, Rgb::ONE));
-        (ended / drawn[0]).as_vec3()
+        // Known light has the wavelengths of all samples of a number, any of which may be the hero.
+        if self.known.is_some() { ended.as_vec3() } else { (ended / drawn[0]).as_vec3() }
     }
 
     /// The throughput of the path of a lane after the hero was reflected by chance, which the others would have been by
     /// other chances.
     fn mirror(&mut self, lane: usize, by: Rgb, throughput: Vec3) -> Vec3 {
         let mirrored = throughput * by.as_vec3();
-        let Some(media) = &mut self.media else { return mirrored };
+        let Some(media) = self.media.as_mut().filter(|_| self.known.is_none()) else { return mirrored };
         let drawn = &mut media.paths[self.block.sample[lane] as usize].drawn;
         let mean = (*drawn * by).mean();
         *drawn = *drawn * by / mean;

@@ -1,5 +1,6 @@
 //! The stages of a path tracer, and the loop that takes a batch of paths through them.
 
+use super::branches::{self, Branches};
 use super::bsdf_block::{BsdfBlock, Scattered};
 use super::emission;
 use super::flights::Flights;
@@ -8,11 +9,14 @@ use super::matte::Reflectances;
 use super::media::Media;
 use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue};
 use super::waves::{self, PathWaves, WavesBlock};
+use super::ways::Way;
+use crate::known_light::KnownLight;
+use crate::path_settings::{Follow, PathSettings};
 use crate::path_sharing::PathSharing;
 use crate::{CameraSample, CameraSamples, Guide, Job, Worker, roulette};
 use raywright_accel::Primitives;
 use raywright_base::math::{Hit, LANES, Ray, SingleLanes, Vec3, VectorLanes, gather};
-use raywright_base::sampling::SamplerColumns;
+use raywright_base::sampling::{SamplerColumns, SamplerLanes};
 use raywright_base::simd::Level;
 use raywright_base::timing::{Part, count, timed};
 use raywright_base::workers::Cancel;
@@ -29,11 +33,15 @@ pub(super) struct WavefrontWorker<'a> {
     pub(super) level: Level,
     /// That of a camera's ray.
     pub(super) footprint: Footprint,
-    pub(super) max_depth: Option<u32>,
-    pub(super) roulette_depth: u32,
-    /// Whether paths go on from surfaces, and whether what lies on the way to a light shadows it.
+    pub(super) settings: PathSettings,
+    /// Whether paths go on from surfaces, and whether matte ones need no more than their own stages.
     pub(super) follows: bool,
-    shadows_block: bool,
+    pub(super) is_plain: bool,
+    /// What is known of light at matte surfaces and in media, if anything is.
+    pub(super) known: Option<&'a dyn KnownLight>,
+    /// The samples that paths split into, if they may; and the ways in which sixteen go on.
+    pub(super) branches: Option<Branches>,
+    pub(super) ways: Vec<Way>,
     /// What paths of a group share, if they do.
     pub(super) sharing: Option<PathSharing>,
     /// What samples find for themselves, and then what they find for sharing.
@@ -171,14 +179,15 @@ impl Block<'_> {
 impl<'a> WavefrontWorker<'a> {
     pub fn new(
         job: &Job<'a>,
-        (max_depth, roulette_depth): (Option<u32>, u32),
-        (shares, follows, shadows_block, scatters): (bool, bool, bool, bool),
+        settings: PathSettings,
         guide: Option<&'a Guide>,
+        known: Option<&'a dyn KnownLight>,
     ) -> Self {
+        let (is_plain, PathSettings { shares, scatters, .. }) = (settings.are_plain(), settings);
         let (scene, level) = (job.scene, Level::current().unwrap_or(Level::Scalar));
         let needs = scene.plan().needs();
         let vary = needs.smooth || needs.instances || needs.points.width || needs.nested && needs.waves;
-        let are_flat = scene.plan().is_constant() && !vary;
+        let are_flat = scene.plan().is_constant() && !vary && is_plain;
         let has_kinds = needs.scattering || guide.is_some() || !are_flat;
         let normal = scene.lights().ask_for_normals();
         // A ray that passes a mask may come to the same shape again.
@@ -198,7 +207,7 @@ impl<'a> WavefrontWorker<'a> {
             sample: [0; LANES],
             time: [0.0; LANES],
             lights: LightBlock::NONE,
-            bsdf: BsdfBlock::new(are_flat, guide),
+            bsdf: BsdfBlock::new(are_flat, guide, settings.least_pdf()),
             next: Scattered::NONE,
             media: MediaBlock::NONE,
             spectral: WavesBlock::NONE,
@@ -207,10 +216,12 @@ impl<'a> WavefrontWorker<'a> {
             scene,
             level,
             footprint: job.footprint,
-            max_depth,
-            roulette_depth: roulette_depth.min(roulette::AT_LATEST),
-            follows,
-            shadows_block,
+            settings: PathSettings { roulette_depth: settings.roulette_depth.min(roulette::AT_LATEST), ..settings },
+            follows: settings.follow != Follow::Nothing,
+            is_plain,
+            known,
+            branches: settings.may_split().then(Branches::default),
+            ways: Vec::new(),
             sharing: (shares && !media).then(|| PathSharing::new(level)),
             found: Vec::new(),
             reflectances: Reflectances::new(scene),
@@ -225,7 +236,7 @@ impl<'a> WavefrontWorker<'a> {
             kinds: (0..few).map(|primitive| kind_of(scene, primitive) as u8).collect(),
             extra,
             masks: Masks::of(scene),
-            media: Media::of(scene, shares, scatters, extra),
+            media: Media::of(scene, shares, scatters && known.is_none(), extra),
             flights: media.then(|| Flights::new(scene, scatters, extra)),
             arriving: Vec::new(),
             waves: Vec::new(),
@@ -235,21 +246,18 @@ impl<'a> WavefrontWorker<'a> {
         }
     }
 
-    /// Make room for so many paths.
+    /// Make room for what so many paths hit.
     fn make_room(&mut self, most: usize) {
         if self.primitives.len() < most + LANES {
-            self.paths = [PathQueue::with_room(most, self.extra), PathQueue::with_room(most, self.extra)];
-            self.shadows = ShadowQueue::with_room(most, self.extra);
             self.primitives.resize(most + LANES, 0);
             self.hits.resize(if self.extra.hits { most } else { 0 }, Hit::MISS);
-            self.is_occluded.resize(most + LANES, false);
         }
     }
 
     /// Stage: some of the camera's rays become paths.
     fn start(&mut self, samples: &CameraSamples, some: Range<usize>) {
-        self.make_room(some.len());
         let (queue, count) = (&mut self.paths[0], some.len());
+        queue.make_room(count);
         queue.rays.len = count;
         for axis in 0..3 {
             queue.rays.origin[axis][..count].copy_from_slice(&samples.origin[axis][some.clone()]);
@@ -357,17 +365,20 @@ impl<'a> WavefrontWorker<'a> {
     /// Whether roulette is played after so many bounces. The density with which a path comes to the second point that
     /// it shares must be known.
     pub(super) fn plays(&self, bounce: u32) -> bool {
-        bounce + 1 >= self.roulette_depth && (bounce > 0 || self.sharing.is_none())
+        bounce + 1 >= self.settings.roulette_depth && (bounce > 0 || self.sharing.is_none())
     }
 
     /// Stage: shadow rays are followed, and what arrives along those that nothing blocks is added.
     fn follow_shadows(&mut self, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
         self.meet_masked_lamps();
-        if self.media.is_some() && self.shadows_block {
+        if self.media.is_some() && self.settings.shadows {
             return self.follow_shadows_through_media(samples, cancel, radiance);
         }
         let queue = &self.shadows;
-        if self.shadows_block {
+        if self.is_occluded.len() < queue.rays.len + LANES {
+            self.is_occluded.resize(queue.rays.len + LANES, false);
+        }
+        if self.settings.shadows {
             self.scene.are_occluded(self.level, &queue.rays, &mut self.is_occluded);
         }
         let [r, g, b] = &queue.arriving;
@@ -387,62 +398,85 @@ impl<'a> WavefrontWorker<'a> {
         cancel: &Cancel,
         radiance: &mut [Rgb],
     ) {
-        let samples_here = some.len() as u32;
+        let count = some.len();
         self.start(samples, some.clone());
         if self.scene.plan().needs().waves {
-            waves::draw(samples, some.clone(), &mut self.waves);
+            waves::draw(samples, some.clone(), self.known, &mut self.waves);
         }
         self.start_in_media(samples, some);
         let Some(mut numbers) = self.samplers.as_ref().map(SamplerColumns::lanes) else { return };
+        let Some(branches) = &mut self.branches else {
+            for bounce in 0.. {
+                if self.paths[0].rays.len == 0 || cancel.is_raised() {
+                    break;
+                }
+                self.bounce(&mut numbers, bounce, count as u32, cancel, radiance);
+            }
+            return waves::see(&self.waves, radiance);
+        };
+        branches.begin(count);
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
         for bounce in 0.. {
+            found.resize(self.branches.as_ref().map_or(count, Branches::len), Rgb::ZERO);
             if self.paths[0].rays.len == 0 || cancel.is_raised() {
                 break;
             }
-            self.shadows.rays.len = 0;
-            if self.media.is_some() {
-                timed(Part::Closest, || self.fly(&mut numbers, bounce, samples_here, cancel, radiance));
-            } else {
-                timed(Part::Closest, || {
-                    self.find_closest();
-                    self.pass_masks(&mut numbers, bounce, samples_here);
-                });
-            }
-            self.classify();
-            timed(Part::Arriving, || {
-                emission::add_outside(self.scene, (&self.paths[0], &self.waves), &self.outside, radiance);
-            });
-            self.paths[1].rays.len = 0;
-            let goes_on = self.max_depth.is_none_or(|depth| bounce < depth);
-            for kind in 0..self.met.len() {
-                let met = std::mem::take(&mut self.met[kind]);
-                count(met.len());
-                for some in met.chunks(LANES) {
-                    timed(Part::Surface, || self.meet(some, radiance));
-                    if !goes_on {
-                        continue;
-                    }
-                    self.gather_media(samples_here);
-                    self.gather_waves();
-                    if let Some(columns) = &self.samplers {
-                        let own = self.block.sample.map(|sample| own(sample, samples_here));
-                        timed(Part::Numbers, || columns.gather(&own, &mut numbers));
-                    }
-                    if kind == Plan::DIFFUSE && !(self.extra.aimed || self.extra.width) {
-                        self.leave_matte(&numbers, bounce, samples_here);
-                    } else {
-                        self.leave_any(&numbers, bounce, samples_here);
-                    }
-                }
-                // Its memory is used again.
-                self.met[kind] = met;
-            }
-            if goes_on {
-                self.leave_media(&mut numbers, bounce, samples_here);
-            }
-            timed(Part::Shadow, || self.follow_shadows(samples_here, cancel, radiance));
-            self.paths.swap(0, 1);
+            self.bounce(&mut numbers, bounce, branches::MOST, cancel, &mut found);
         }
-        waves::see(&self.waves, radiance);
+        waves::see(&self.waves, &mut found);
+        if let Some(branches) = &self.branches {
+            branches.gather(&found, radiance);
+        }
+        self.found = found;
+    }
+
+    /// Takes all paths to what they meet next, and on from there.
+    fn bounce(&mut self, numbers: &mut SamplerLanes, bounce: u32, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
+        self.make_room(self.paths[0].rays.len);
+        self.shadows.rays.len = 0;
+        if self.media.is_some() {
+            timed(Part::Closest, || self.fly(numbers, bounce, samples, cancel, radiance));
+        } else {
+            timed(Part::Closest, || {
+                self.find_closest();
+                self.pass_masks(numbers, bounce, samples);
+            });
+        }
+        self.classify();
+        timed(Part::Arriving, || {
+            emission::add_outside(self.scene, (&self.paths[0], &self.waves), &self.outside, radiance);
+        });
+        self.paths[1].rays.len = 0;
+        let goes_on = self.settings.max_depth.is_none_or(|depth| bounce < depth);
+        for kind in 0..self.met.len() {
+            let met = std::mem::take(&mut self.met[kind]);
+            count(met.len());
+            for some in met.chunks(LANES) {
+                timed(Part::Surface, || self.meet(some, radiance));
+                if !goes_on {
+                    continue;
+                }
+                self.gather_media(samples);
+                self.gather_waves();
+                if let Some(columns) = &self.samplers {
+                    let own = self.block.sample.map(|sample| own(sample, samples));
+                    timed(Part::Numbers, || columns.gather(&own, numbers));
+                }
+                if kind == Plan::DIFFUSE && self.is_plain && !(self.extra.aimed || self.extra.width) {
+                    self.leave_matte(numbers, bounce, samples);
+                } else {
+                    self.leave_any(numbers, bounce, samples, radiance);
+                }
+            }
+            // Its memory is used again.
+            self.met[kind] = met;
+        }
+        if goes_on {
+            self.leave_media(numbers, bounce, samples, radiance);
+        }
+        timed(Part::Shadow, || self.follow_shadows(samples, cancel, radiance));
+        self.paths.swap(0, 1);
     }
 }
 
@@ -502,8 +536,13 @@ impl Worker for WavefrontWorker<'_> {
             let each = vec![1; if groups.is_empty() { samples.len } else { 0 }];
             return self.follow_groups(samples, if groups.is_empty() { &each } else { groups }, cancel, radiance);
         }
-        for start in (0..samples.len).step_by(BATCH) {
-            let end = samples.len.min(start + BATCH);
+        // Each sample is on its own, so that paths that split may be taken in smaller batches.
+        let PathSettings { splits, light_samples, gather, follow, .. } = self.settings;
+        let batch = if follow == Follow::DeltaLobes { BATCH / 8 } else { BATCH };
+        let ways = splits.max(light_samples).max(gather.map_or(1, |gather| gather.rays));
+        let batch = (batch / ways as usize).max(LANES);
+        for start in (0..samples.len).step_by(batch) {
+            let end = samples.len.min(start + batch);
             self.follow(samples, start..end, cancel, &mut radiance[start..end]);
         }
     }

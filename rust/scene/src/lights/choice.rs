@@ -1,7 +1,7 @@
 //! Light selection among the lights within a scene.
 
-use super::{LightBounds, LightContextLanes, LightSampleContext, LightTree, Sides};
-use raywright_base::math::{DVec3, LANES};
+use super::{LightBounds, LightSampleContext, LightTree, Sides};
+use raywright_base::math::DVec3;
 use raywright_base::sampling::AliasTable;
 use std::f64::consts::PI;
 
@@ -91,18 +91,6 @@ impl Choice {
                 Some((chosen, table.probability(chosen)))
             }
             Self::Tree(tree) => tree.sample(receiver, u),
-        }
-    }
-
-    /// Samples a light for each of sixteen receivers.
-    pub fn sample_lanes(
-        &self,
-        receivers: &LightContextLanes,
-        u: &[f64; LANES],
-        chosen: &mut [Option<(usize, f64)>; LANES],
-    ) {
-        for lane in 0..LANES {
-            chosen[lane] = self.sample(&receivers.get(lane), u[lane]);
         }
     }
 

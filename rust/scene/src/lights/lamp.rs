@@ -119,9 +119,7 @@ impl Lights {
             before += probability;
             let light = self.plain(geometry, number)?;
             let (place, form) = match light.figure {
-                Figure::Triangle { corners: [a, b, c], .. } => {
-                    (a, Form::Triangle([(b - a).as_vec3(), (c - a).as_vec3()]))
-                }
+                Figure::Triangle { corners: [a, b, c] } => (a, Form::Triangle([(b - a).as_vec3(), (c - a).as_vec3()])),
                 Figure::Ball { center, radius } => (center, Form::Sphere(radius)),
             };
             let (radiance, sides) = (light.radiance.as_vec3(), light.sides.map(mask));

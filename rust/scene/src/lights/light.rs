@@ -1,9 +1,7 @@
 //! Interface of lights that are not surfaces.
 
-use super::{LightBounds, LightContextLanes, LightLanes, LightSample, LightSampleContext, PointEmission};
+use super::{LightBounds, LightSample, LightSampleContext, PointEmission};
 use raywright_base::math::DVec3;
-use raywright_base::sampling::Pairs;
-use raywright_base::simd::Level;
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use std::fmt::Debug;
@@ -48,11 +46,6 @@ pub trait Light: Debug + Send + Sync {
     /// Samples incident light at a receiver, as if this were the only light, by two numbers in [0, 1). Returns `None`
     /// if the sample carries no light. Samples below the receiver's horizon are allowed.
     fn sample(&self, receiver: &LightSampleContext, u: [f64; 2]) -> Option<LightSample>;
-
-    /// Samples incident light for sixteen receivers.
-    fn sample_lanes(&self, _: Level, receivers: &LightContextLanes, u: &Pairs, lights: &mut LightLanes) {
-        lights.draw_each(receivers, u, |receiver, u| self.sample(receiver, u));
-    }
 
     /// Radiance from infinity along a unit direction that points to the light; black for a delta light.
     fn infinite_radiance(&self, _direction: DVec3) -> Rgb {

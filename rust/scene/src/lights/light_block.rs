@@ -4,7 +4,7 @@ use super::choice::Choice;
 use super::lamp::{FEW_LAMPS, Form, LampLanes, spread};
 use super::sphere_block::draw_spheres;
 use super::triangle_block::draw_triangles;
-use super::{LightContextLanes, LightSample, LightSampleContext, Lights};
+use super::{LightSample, LightSampleContext, Lights};
 use crate::geometry::SurfaceBlock;
 use crate::{Geometry, RayOrigin};
 use raywright_base::math::single::{cosine_hemisphere, to_world};
@@ -162,12 +162,7 @@ impl Lights {
                 }
                 return draw_lamps(level, surfaces, &lamps, u, lights);
             }
-            let mut chosen = [None; LANES];
-            let mut contexts = LightContextLanes::NONE;
-            for lane in 0..LANES {
-                contexts.set(lane, &receivers.get(lane));
-            }
-            choices.sample_lanes(&contexts, choice, &mut chosen);
+            let chosen = std::array::from_fn(|lane| choices.sample(&receivers.get(lane), choice[lane]));
             return self.draw_chosen(level, geometry, receivers, &chosen, u, lights);
         }
         let sky = self.constant_sky();

@@ -20,7 +20,7 @@ pub(super) struct PlainLight {
 /// Geometry of the emitter.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Figure {
-    Triangle { corners: [DVec3; 3], normal: DVec3 },
+    Triangle { corners: [DVec3; 3] },
     Ball { center: DVec3, radius: f64 },
 }
 
@@ -30,7 +30,7 @@ impl PlainLight {
     pub fn new(geometry: &Geometry, luminous: &Luminous, primitive: u32) -> Option<Self> {
         let Luminous { emission, open: None } = luminous else { return None };
         let figure = match geometry.shape(primitive) {
-            None => Figure::Triangle { corners: geometry.corners(primitive), normal: geometry.normal(primitive) },
+            None => Figure::Triangle { corners: geometry.corners(primitive) },
             Some(shape) => {
                 let (center, radius) = shape.ball()?;
                 Figure::Ball { center, radius }

@@ -6,7 +6,6 @@ mod environments;
 mod few;
 mod instances;
 mod irradiance;
-mod lanes;
 mod many;
 mod shapes;
 mod spots;

@@ -1,0 +1,101 @@
+//! What integrators that follow paths from the camera choose.
+
+use super::known_light::Gather;
+use raywright_optics::Rgb;
+
+/// Which of the directions that surfaces scatter into are followed. Light from the others is sampled directly, at light
+/// sources alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Follow {
+    /// All.
+    All,
+    /// Those drawn with a density, in solid angle, above this.
+    MinDensity(f64),
+    /// Delta directions only, and of these every one: paths are split.
+    DeltaLobes,
+    /// None.
+    Nothing,
+}
+
+/// Settings of a path tracer and of its ancestors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PathSettings {
+    /// Maximum number of bounces.
+    pub max_depth: Option<u32>,
+    /// Number of bounces after which Russian roulette starts.
+    pub roulette_depth: u32,
+    /// Whether media scatter light; else they only dim it.
+    pub scatters: bool,
+    /// Number of light samples at the first surface.
+    pub light_samples: u32,
+    /// Number of paths that go on from the first surface.
+    pub splits: u32,
+    /// Which directions are followed.
+    pub follow: Follow,
+    /// Whether what lies on the way to a light shadows it.
+    pub shadows: bool,
+    /// Uniform radiance in place of what is not followed, where it is scattered diffusely.
+    pub ambient: Rgb,
+    /// Minimum contribution of a path in any color; others end.
+    pub least: f64,
+    /// Whether paths of a group share what they find, in scenes where they can ([`super::path_sharing::can_share`]).
+    pub shares: bool,
+    /// Whether paths are guided to where light comes from by way of mirrors and glass.
+    pub guided: bool,
+    /// What becomes of paths where light is known already; `None` where none is.
+    pub gather: Option<Gather>,
+}
+
+impl PathSettings {
+    /// Those of a path tracer.
+    pub fn path(max_depth: Option<u32>, roulette_depth: u32) -> Self {
+        Self {
+            max_depth,
+            roulette_depth,
+            scatters: true,
+            light_samples: 1,
+            splits: 1,
+            follow: Follow::All,
+            shadows: true,
+            ambient: Rgb::ZERO,
+            least: 0.0,
+            shares: false,
+            guided: false,
+            gather: None,
+        }
+    }
+
+    /// Those of integrators whose light is scattered by surfaces alone: media only dim it. No roulette is played.
+    pub fn dimmed(max_depth: u32) -> Self {
+        Self { scatters: false, ..Self::path(Some(max_depth), u32::MAX) }
+    }
+
+    /// Whether matte surfaces need no more than the stages of [`super::wavefront`] for these.
+    pub fn are_plain(&self) -> bool {
+        self.light_samples == 1
+            && self.ambient.is_black()
+            && self.least == 0.0
+            && !self.may_split()
+            && matches!(self.follow, Follow::All | Follow::Nothing)
+    }
+
+    /// Whether one path may go on as several.
+    pub fn may_split(&self) -> bool {
+        self.splits > 1 || self.follow == Follow::DeltaLobes || self.gather.is_some()
+    }
+
+    /// The density above which directions are followed, or at.
+    pub fn least_pdf(&self) -> f64 {
+        match self.follow {
+            Follow::All => 0.0,
+            Follow::MinDensity(than) => than.next_up(),
+            Follow::DeltaLobes | Follow::Nothing => f64::INFINITY,
+        }
+    }
+}
+
+/// The choice of one of several light samples: each chooses in its own share of all.
+#[inline]
+pub(crate) fn stratum(choice: f64, (number, count): (u32, u32)) -> f64 {
+    if count == 1 { choice } else { ((choice + f64::from(number)) / f64::from(count)).min(1f64.next_down()) }
+}
