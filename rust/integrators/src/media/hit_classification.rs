@@ -1,7 +1,6 @@
 //! Classification of hits of rays in media.
 
 use super::current_medium::Filled;
-use super::ray_tracer::{ImmediateQueries, TraceRays, at_once};
 use crate::nesting::{Boundary, Filling, MediumStack, Vicinity, around};
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Scene, SurfaceInteraction};
@@ -25,12 +24,7 @@ pub(crate) enum ClassifiedHit {
 
 /// Classify a hit of a ray in given media. A boundary that neither reflects nor refracts is no surface, unless an open
 /// surface coincides with it, such as the floor under smoke.
-pub(crate) async fn come_to(
-    (scene, asks): (&Scene, impl TraceRays),
-    ray: &Ray,
-    hit: &Hit,
-    media: &MediumStack<Filled>,
-) -> ClassifiedHit {
+pub(crate) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> ClassifiedHit {
     let around = around::<Filled>(scene, ray, hit);
     let at = (hit, around.beyond(hit));
     match around {
@@ -39,13 +33,8 @@ pub(crate) async fn come_to(
             ClassifiedHit::Surface { hit: *hit, outside, through: *media, beyond: at.1 }
         }
         Vicinity::Nothing(_) => classify(scene, ray, at, media, std::slice::from_ref(hit)),
-        Vicinity::Window(window) => asks.crossed(&window, |crossed| classify(scene, ray, at, media, crossed)).await,
+        Vicinity::Window(window) => classify(scene, ray, at, media, &scene.crossings(&[window]).hits),
     }
-}
-
-/// Classify a hit as [`come_to`] does, for a single ray.
-pub(crate) fn meet(scene: &Scene, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> ClassifiedHit {
-    at_once(come_to((scene, ImmediateQueries(scene)), ray, hit, media))
 }
 
 /// Classify a hit of a closed surface, given all hits at its position and the `t` from which the ray continues.

@@ -8,7 +8,6 @@ pub(super) mod hit_classification;
 pub(super) mod path_numbers;
 pub(super) mod path_reuse;
 mod point_pairs;
-pub(super) mod ray_tracer;
 pub(super) mod scattering;
 pub(super) mod spectral_mis;
 mod transmittance;

@@ -2,7 +2,7 @@
 //! f64.
 
 use super::flights::{self, floor, glass, lamp, smoke};
-use super::wavefront::assert_same_by;
+use super::wavefront::{assert_each_on_its_own, assert_same_by};
 use super::{job, kinds};
 use crate::path_settings::{Follow, PathSettings};
 use crate::{CameraSample, Integrator, PhotonMap, Whitted};
@@ -80,19 +80,7 @@ fn what_a_sample_of_split_paths_finds_depends_on_no_other() {
                 CameraSample { ray: Ray::new(EYE, warp::uniform_sphere(sampler.two(0))), sampler }
             };
             let samples: Vec<_> = (0..1500).map(sample).collect();
-            let in_parts = |part: usize| {
-                let mut values = vec![Rgb::ZERO; samples.len()];
-                let mut worker = session.worker();
-                for (samples, values) in samples.chunks(part).zip(values.chunks_mut(part)) {
-                    worker.radiance(&mut samples.to_vec(), &Cancel::default(), values);
-                }
-                values
-            };
-            let whole = in_parts(samples.len());
-            assert!(whole.iter().any(|value| !value.is_black()));
-            for part in [1, 7, 100] {
-                assert!(in_parts(part) == whole, "{part} at a time");
-            }
+            assert_each_on_its_own(&*session, &samples, &[1, 7, 100]);
         }
     }
 }

@@ -291,18 +291,25 @@ fn what_a_sample_finds_depends_on_no_other() {
                 CameraSample { ray: Ray::new(eye, warp::uniform_sphere(sampler.two(0))), sampler }
             })
             .collect();
-        let in_parts = |part: usize| {
-            let mut values = vec![Rgb::ZERO; samples.len()];
-            let mut worker = session.worker();
-            for (samples, values) in samples.chunks(part).zip(values.chunks_mut(part)) {
-                worker.radiance(&mut samples.to_vec(), &Cancel::default(), values);
-            }
-            values
-        };
-        let whole = in_parts(samples.len());
-        for part in [7, 100, 4097] {
-            assert!(in_parts(part) == whole, "{part} at a time");
+        assert_each_on_its_own(&*session, &samples, &[7, 100, 4097]);
+    }
+}
+
+/// Assert that samples find the same whether so many are taken at a time, or all.
+#[track_caller]
+pub(super) fn assert_each_on_its_own(session: &dyn Session, samples: &[CameraSample], parts: &[usize]) {
+    let in_parts = |part: usize| {
+        let mut values = vec![Rgb::ZERO; samples.len()];
+        let mut worker = session.worker();
+        for (samples, values) in samples.chunks(part).zip(values.chunks_mut(part)) {
+            worker.radiance(&mut samples.to_vec(), &Cancel::default(), values);
         }
+        values
+    };
+    let whole = in_parts(samples.len());
+    assert!(whole.iter().any(|value| !value.is_black()));
+    for &part in parts {
+        assert!(in_parts(part) == whole, "{part} at a time");
     }
 }
 

@@ -1,14 +1,12 @@
-//! Volumetric camera paths.
+//! Camera paths that are followed one by one.
 
-use super::batch_executor::{Lane, lanes, together};
-use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, OnTheWay, RaySegmentState, TraversalEnd};
 use super::path_state::PathState;
 use crate::dimensions::Dimensions;
 use crate::known_light::KnownLight;
 use crate::media::current_medium::Filled;
 use crate::media::equiangular::{PointLights, ScatteringSpan};
 use crate::media::path_numbers::{PathNumbers, depth};
-use crate::media::ray_tracer::TraceRays;
 use crate::media::scattering::Scattering;
 use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
@@ -19,51 +17,31 @@ use crate::{CameraSample, Worker, roulette};
 use raywright_base::math::{Hit, Ray};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
-use raywright_optics::{Bsdf, BsdfSample, Rgb};
+use raywright_optics::{Bsdf, BsdfSample, Phase, Rgb};
+use raywright_scene::media::Coefficients;
 use raywright_scene::{
     Footprint, Interaction, LightSample, LightSampleContext, LookupContext, Scene, SurfaceInteraction,
 };
-use std::cell::{Cell, RefCell};
 
 /// Index and count of a single light sample.
 pub(super) const ONCE: (u32, u32) = (0, 1);
 
-/// A path tracer that is generic over ray intersection.
+/// A path tracer of single paths.
 #[derive(Clone, Copy)]
-pub(super) struct Walker<'a, A> {
+pub(super) struct Walker<'a> {
     pub(super) settings: PathSettings,
     pub(super) scene: &'a Scene,
     /// Footprint of camera rays, if materials need it.
-    footprint: Option<Footprint>,
+    pub(super) footprint: Option<Footprint>,
     /// Point lights.
     pub(super) points: &'a PointLights<'a>,
     /// Precomputed light at scattering events, if any.
     pub(super) known: Option<&'a dyn KnownLight>,
-    /// Ray intersection.
-    asks: A,
 }
 
-/// Per-thread state.
-pub(super) struct Walkers<'a> {
-    walker: Walker<'a, ()>,
-}
-
-impl<'a> Walkers<'a> {
-    pub fn new(
-        settings: PathSettings,
-        (scene, footprint): (&'a Scene, Footprint),
-        points: &'a PointLights<'a>,
-        known: Option<&'a dyn KnownLight>,
-    ) -> Self {
-        let footprint = scene.plan().needs().points.width.then_some(footprint);
-        let walker = Walker { settings, scene, footprint, points, known, asks: () };
-        Self { walker }
-    }
-}
-
-impl<'a, A: TraceRays> Walker<'a, A> {
+impl<'a> Walker<'a> {
     /// Return the radiance along a camera ray. `waiting` is storage for split paths.
-    async fn follow(
+    fn follow(
         &self,
         sample: &mut CameraSample,
         media: MediumStack<Filled>,
@@ -92,7 +70,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         while let Some(mut path) = waiting.pop() {
             while !cancel.is_raised() {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
-                let place = self.advance(&mut path, hero, &mut numbers, cancel, &mut light).await;
+                let place = self.advance(&mut path, hero, &mut numbers, cancel, &mut light);
                 let Some(place) = place else { break };
                 let goes_on = match place {
                     TraversalEnd::Medium { here, .. } if self.known.is_some() => {
@@ -108,11 +86,11 @@ impl<'a, A: TraceRays> Walker<'a, A> {
                             density,
                         });
                         let part = part.filter(|_| self.is_lit(&path));
-                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light).await
+                        self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light)
                     }
                     TraversalEnd::Surface { hit, outside, through } => {
                         let (at, of) = ((hit, outside, through), (hero, number));
-                        self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, &mut light).await
+                        self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, &mut light)
                     }
                     TraversalEnd::Outside => false,
                 };
@@ -125,13 +103,13 @@ impl<'a, A: TraceRays> Walker<'a, A> {
     }
 
     /// Return the medium traversal of the path's wavelengths.
-    pub(super) fn course(&self, waves: Option<Waves>) -> MediumTraversal<'a, A> {
-        MediumTraversal { scene: self.scene, asks: self.asks, scatters: self.settings.scatters, roulette: false, waves }
+    pub(super) fn course(&self, waves: Option<Waves>) -> MediumTraversal<'a> {
+        MediumTraversal { scene: self.scene, scatters: self.settings.scatters, roulette: false, waves }
     }
 
     /// Advance a path along its ray to its next scattering event. Return `None` if it leaves the scene, after adding
     /// the light from outside.
-    async fn advance(
+    fn advance(
         &self,
         path: &mut PathState,
         hero: usize,
@@ -142,10 +120,15 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         let u = numbers.ray.mask();
         let way = depth(numbers.one(u));
         let mut going = RaySegmentState { ray: path.ray, weights: path.weights, media: path.media };
-        let lit = self.is_lit(path).then(|| self.of_points(path, hero, cancel));
-        let course = self.course(path.waves);
-        let place = course.advance(&mut going, (hero, way), numbers, cancel, light, lit.as_ref()).await;
-        drop(lit);
+        let before = *path;
+        let lit =
+            |now: &RaySegmentState, span, (here, phase): (&Coefficients, Phase), numbers: &mut PathNumbers<'_>| {
+                let RaySegmentState { ray, weights, media } = *now;
+                let path = PathState { ray, weights, media, ..before };
+                self.lit_on_the_way(&path, span, here, phase, hero, numbers, cancel)
+            };
+        let lit = self.is_lit(path).then_some(&lit as OnTheWay<'_>);
+        let place = self.course(path.waves).advance(&mut going, (hero, way), numbers, cancel, light, lit);
         (path.ray, path.weights, path.media) = (going.ray, going.weights, going.media);
         if let Some(TraversalEnd::Outside) = place {
             *light += path.weights.throughput() * self.light_from_outside(path);
@@ -188,7 +171,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
 
     /// Scatter a path in a medium and return whether it continues.
     #[allow(clippy::too_many_arguments)]
-    async fn scatter(
+    fn scatter(
         &self,
         path: &mut PathState,
         here: &Scattering,
@@ -202,7 +185,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
             return false;
         }
         let media = path.media;
-        let asked = self.direct_light(here, path, |_| media, (hero, ONCE), numbers, cancel).await;
+        let asked = self.direct_light(here, path, |_| media, (hero, ONCE), numbers, cancel);
         if let Some((drawn, arrives)) = asked {
             let place = drawn.source.filter(|_| drawn.pdf == f64::INFINITY).map(|source| source.position());
             let weight = match (part, place) {
@@ -219,7 +202,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
 
     /// Scatter a path at a surface and return whether it continues.
     #[allow(clippy::too_many_arguments)]
-    async fn reflect(
+    fn reflect(
         &self,
         path: &mut PathState,
         (hit, outside, through): (Hit, f64, MediumStack<Filled>),
@@ -268,7 +251,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
             let often = if path.bounce == 0 { self.settings.light_samples } else { 1 };
             for number in 0..often {
                 let draw = (hero, (number, often));
-                if let Some((_, arrives)) = self.direct_light(&here, path, side, draw, numbers, cancel).await {
+                if let Some((_, arrives)) = self.direct_light(&here, path, side, draw, numbers, cancel) {
                     *light += arrives;
                 }
             }
@@ -400,33 +383,17 @@ impl<'a, A: TraceRays> Walker<'a, A> {
     }
 }
 
-impl Walkers<'_> {
-    /// Trace the paths of some samples to their ends.
-    fn follow(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
-        assert_eq!(samples.len(), radiance.len());
-        let Walker { settings, scene, footprint, points, known, .. } = self.walker;
-        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
-        let mut media = Vec::new();
-        MediumStack::at(scene, &rays, &mut media);
-        let lanes = lanes(samples.len());
-        let radiance = Cell::from_mut(radiance).as_slice_of_cells();
-        let to_do = RefCell::new(samples.iter_mut().zip(media).zip(radiance));
-        together(scene, &lanes, |lane: &Lane| {
-            let (walker, to_do) = (Walker { settings, scene, footprint, points, known, asks: lane }, &to_do);
-            async move {
-                let mut waiting = Vec::new();
-                while !cancel.is_raised() {
-                    let next = to_do.borrow_mut().next();
-                    let Some(((sample, media), radiance)) = next else { return };
-                    radiance.set(walker.follow(sample, media, &mut waiting, cancel).await);
-                }
-            }
-        });
-    }
-}
-
-impl Worker for Walkers<'_> {
+impl Worker for Walker<'_> {
     fn radiance(&mut self, samples: &mut [CameraSample], cancel: &Cancel, radiance: &mut [Rgb]) {
-        self.follow(samples, cancel, radiance);
+        assert_eq!(samples.len(), radiance.len());
+        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
+        let (mut media, mut waiting) = (Vec::new(), Vec::new());
+        MediumStack::at(self.scene, &rays, &mut media);
+        for ((sample, media), radiance) in samples.iter_mut().zip(media).zip(radiance) {
+            if cancel.is_raised() {
+                return;
+            }
+            *radiance = self.follow(sample, media, &mut waiting, cancel);
+        }
     }
 }

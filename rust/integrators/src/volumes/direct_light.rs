@@ -5,7 +5,6 @@ use super::medium_traversal::MediumTraversal;
 use super::path_state::PathState;
 use crate::media::current_medium::Filled;
 use crate::media::path_numbers::PathNumbers;
-use crate::media::ray_tracer::TraceRays;
 use crate::media::spectral_mis::Weights;
 use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
@@ -15,10 +14,10 @@ use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Interaction, LightSample, LightSampleContext};
 
-impl<A: TraceRays> Walker<'_, A> {
+impl Walker<'_> {
     /// Sample a light at a vertex (next-event estimation) and return the light that arrives. `through` are the media of
     /// rays that leave to the other side, if any do. The sample is one of a number, stratified over the lights.
-    pub(super) async fn direct_light(
+    pub(super) fn direct_light(
         &self,
         here: &impl Interaction,
         path: &PathState,
@@ -33,13 +32,13 @@ impl<A: TraceRays> Walker<'_, A> {
         let receiver = LightSampleContext { waves: path.waves, ..here.light_context() };
         // MIS treats all samples as one with the density multiplied by their number.
         let light = lights.sample(geometry, &receiver, choice, u)?.chosen(f64::from(draw.1));
-        let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel).await?;
+        let arrives = self.arriving(here, path, &light, media(&light), hero, numbers, cancel)?;
         Some((light, arrives))
     }
 
     /// Return the light of a sample that arrives at a vertex, weighted by MIS with BSDF or phase function sampling.
     #[allow(clippy::too_many_arguments)]
-    pub(super) async fn arriving(
+    pub(super) fn arriving(
         &self,
         here: &impl Interaction,
         path: &PathState,
@@ -66,7 +65,7 @@ impl<A: TraceRays> Walker<'_, A> {
         let mut weights = Weights { carried, drawn: by_chance, asked: path.weights.drawn };
         let course = MediumTraversal { roulette: here.light_context().is_free(), ..self.course(path.waves) };
         if self.settings.shadows {
-            course.shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel).await;
+            course.shadow(ray, media, &mut weights, &mut Some(hero), numbers, cancel);
         }
         let asked = weights.asked.mean();
         Some(weights.carried / asked * power_heuristic(asked, weights.drawn.mean()))

@@ -1,10 +1,8 @@
 //! Equiangular sampling of point lights along rays.
 
 use super::camera_paths::Walker;
-use super::medium_traversal::{OnTheWay, RaySegmentState};
 use super::path_state::PathState;
 use crate::media::path_numbers::PathNumbers;
-use crate::media::ray_tracer::TraceRays;
 use crate::media::scattering::Scattering;
 use crate::media::spectral_mis::Weights;
 use crate::mis_weight::power_heuristic;
@@ -13,43 +11,11 @@ use raywright_optics::{Phase, Rgb};
 use raywright_scene::media::Coefficients;
 use raywright_scene::{Interaction, LightSampleContext};
 
-/// Adds the light of points along a path's segments.
-struct OfPoints<'p, 'a, A> {
-    walker: &'p Walker<'a, A>,
-    path: &'p PathState,
-    hero: usize,
-    cancel: &'p Cancel,
-}
-
-impl<A: TraceRays> OnTheWay for OfPoints<'_, '_, A> {
-    async fn add(
-        &self,
-        now: &RaySegmentState,
-        span: [f64; 2],
-        (here, phase): (&Coefficients, Phase),
-        numbers: &mut PathNumbers<'_>,
-    ) -> Rgb {
-        let RaySegmentState { ray, weights, media, .. } = *now;
-        let path = PathState { ray, weights, media, ..*self.path };
-        self.walker.lit_on_the_way(&path, span, here, phase, self.hero, numbers, self.cancel).await
-    }
-}
-
-impl<'a, A: TraceRays> Walker<'a, A> {
-    /// Return the adder of point lights for a path.
-    pub(super) fn of_points<'p>(
-        &'p self,
-        path: &'p PathState,
-        hero: usize,
-        cancel: &'p Cancel,
-    ) -> impl OnTheWay + use<'p, 'a, A> {
-        OfPoints { walker: self, path, hero, cancel }
-    }
-
+impl Walker<'_> {
     /// Return the in-scattered light of point lights from a homogeneous medium between two `t` of a path's ray. MIS
     /// combines it with light sampling at the path's own scattering events.
     #[allow(clippy::too_many_arguments)]
-    async fn lit_on_the_way(
+    pub(super) fn lit_on_the_way(
         &self,
         path: &PathState,
         span: [f64; 2],
@@ -70,7 +36,7 @@ impl<'a, A: TraceRays> Walker<'a, A> {
         };
         let weights = Weights { carried: path.weights.carried * here.scattering * left / pdf, ..path.weights };
         let there = PathState { weights, ..*path };
-        let arrives = self.arriving(&point, &there, &light, path.media, hero, numbers, cancel).await;
+        let arrives = self.arriving(&point, &there, &light, path.media, hero, numbers, cancel);
         let Some(arrives) = arrives else {
             return Rgb::ZERO;
         };

@@ -36,7 +36,7 @@ impl Arrival {
     }
 }
 
-impl<A> Walker<'_, A> {
+impl Walker<'_> {
     fn visit(&self, path: &PathState, number: u32, looks_about: bool) -> Visit {
         let bounces = self.settings.max_depth.map(|depth| depth.saturating_sub(path.bounce + 1));
         Visit { number, looks_about, has_gamut_excess: path.has_gamut_excess, single: path.single, bounces }

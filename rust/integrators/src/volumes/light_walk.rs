@@ -1,11 +1,10 @@
 //! Tracing of light paths through media, one path at a time.
 
-use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
 use super::vertex::{Point, Vertex};
 use crate::light_paths::{Arrived, Dimensions, EmissionDimensions, Limits, Onward, Times};
 use crate::media::current_medium::Filled;
 use crate::media::path_numbers::{PathNumbers, depth};
-use crate::media::ray_tracer::at_once;
 use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::terminate_wavelengths::Parting;
@@ -175,8 +174,8 @@ impl<'a> MediaLightWalk<'a> {
             let before = path.flux();
             let way = depth(numbers.one(dimensions.mask()));
             let (hero, mut glow) = (path.hero, Rgb::ZERO);
-            let (course, lit, going) = (self.course(&path), None::<&Nobody>, &mut path.going);
-            let place = at_once(course.advance(going, (hero, way), &mut numbers, cancel, &mut glow, lit));
+            let (course, going) = (self.course(&path), &mut path.going);
+            let place = course.advance(going, (hero, way), &mut numbers, cancel, &mut glow, None);
             let taken = if place.is_some() { before - path.flux() } else { before };
             visitor.absorb(taken);
             let RaySegmentState { ray, media, .. } = path.going;
@@ -226,7 +225,7 @@ impl<'a> MediaLightWalk<'a> {
         let Ray { origin, direction, time, .. } = path.going.ray;
         let back = Ray { time, ..Ray::new(origin, -direction) };
         let before = path.flux();
-        let left = at_once(self.course(path).through(before, back, MediumStack::NONE, numbers, cancel));
+        let left = self.course(path).through(before, back, MediumStack::NONE, numbers, cancel);
         visitor.absorb(before - left);
         path.going.weights.carried = left;
     }

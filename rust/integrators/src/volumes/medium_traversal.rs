@@ -2,9 +2,8 @@
 
 use crate::media::current_medium::{self, Filled};
 use crate::media::distance_sampling::{Collision, MediumSegment};
-use crate::media::hit_classification::{ClassifiedHit, come_to, straight};
+use crate::media::hit_classification::{ClassifiedHit, meet, straight};
 use crate::media::path_numbers::PathNumbers;
-use crate::media::ray_tracer::{ImmediateQueries, TraceRays};
 use crate::media::scattering::Scattering;
 use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
@@ -18,10 +17,8 @@ use raywright_scene::media::Coefficients;
 
 /// Constant parameters of a traversal.
 #[derive(Clone, Copy)]
-pub(crate) struct MediumTraversal<'a, A = ImmediateQueries<'a>> {
+pub(crate) struct MediumTraversal<'a> {
     pub scene: &'a Scene,
-    /// Ray intersection.
-    pub asks: A,
     /// False if media only attenuate.
     pub scatters: bool,
     /// True if roulette terminates faint light on straight segments in any medium. This requires an end of the segment
@@ -49,46 +46,27 @@ pub(crate) enum TraversalEnd {
     Outside,
 }
 
-/// Adds light that reaches a path along its ray.
-pub(super) trait OnTheWay {
-    /// Return the light on a span of the ray in a homogeneous scattering medium.
-    async fn add(
-        &self,
-        now: &RaySegmentState,
-        span: [f64; 2],
-        here: (&Coefficients, Phase),
-        numbers: &mut PathNumbers<'_>,
-    ) -> Rgb;
-}
-
-/// Adds no light.
-pub(super) struct Nobody;
-
-impl OnTheWay for Nobody {
-    async fn add(&self, _: &RaySegmentState, _: [f64; 2], _: (&Coefficients, Phase), _: &mut PathNumbers<'_>) -> Rgb {
-        Rgb::ZERO
-    }
-}
+/// Returns the light that reaches a path along a span of its ray in a homogeneous scattering medium.
+pub(super) type OnTheWay<'o> =
+    &'o dyn Fn(&RaySegmentState, [f64; 2], (&Coefficients, Phase), &mut PathNumbers<'_>) -> Rgb;
 
 impl<'a> MediumTraversal<'a> {
-    /// Make a traversal for a single path.
+    /// Make the traversal of paths that media scatter.
     pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
-        Self { scene, asks: ImmediateQueries(scene), scatters: true, roulette: false, waves }
+        Self { scene, scatters: true, roulette: false, waves }
     }
-}
 
-impl<A: TraceRays> MediumTraversal<'_, A> {
     /// Advance a path along its ray to the next scattering event; `None` if its weight is zero. `way` is the optical
     /// depth of its hero before the event, sampled once for all media along the ray. Emission along the way is added to
     /// `light`.
-    pub async fn advance(
+    pub fn advance(
         &self,
         path: &mut RaySegmentState,
         (hero, mut way): (usize, f64),
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
-        on_the_way: Option<&impl OnTheWay>,
+        on_the_way: Option<OnTheWay<'_>>,
     ) -> Option<TraversalEnd> {
         let mut start = path.ray.t_min;
         while !cancel.is_raised() {
@@ -106,12 +84,12 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
                 let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
                 asked.t_max = reach.next_up().min(asked.t_max);
             }
-            let hit = self.asks.first(&asked).await;
+            let hit = self.scene.intersect_one(&asked);
             let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
             if let Some((medium, within)) = around {
                 let span = [start, end];
                 if let (Some(here), Some(lit)) = (even, on_the_way) {
-                    *light += lit.add(path, span, (&here, medium.phase()), numbers).await;
+                    *light += lit(path, span, (&here, medium.phase()), numbers);
                 }
                 let flight = MediumSegment { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
                 let weights = &mut path.weights;
@@ -128,7 +106,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
                 return Some(TraversalEnd::Outside);
             }
             start = hit.t;
-            match come_to((self.scene, self.asks), &path.ray, &hit, &path.media).await {
+            match self.meet(&path.ray, &hit, &path.media) {
                 ClassifiedHit::Passed(beyond, media) => {
                     (path.ray.t_min, path.media) = (beyond, media);
                     path.ray.misses[0] = hit.primitive;
@@ -153,7 +131,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
     /// Attenuate light along a ray that starts in given media, by everything on it. The wavelength that samples by
     /// chance is drawn when needed, unless given.
     #[allow(clippy::too_many_arguments)]
-    pub async fn shadow(
+    pub fn shadow(
         &self,
         mut ray: Ray,
         mut media: MediumStack<Filled>,
@@ -165,11 +143,8 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
         let length = ray.direction.length();
         let mut start = ray.t_min;
         while !cancel.is_raised() {
-            let hit = self.asks.first(&ray).await;
-            let met = match hit.is_hit() {
-                true => Some(come_to((self.scene, self.asks), &ray, &hit, &media).await),
-                false => None,
-            };
+            let hit = self.scene.intersect_one(&ray);
+            let met = hit.is_hit().then(|| self.meet(&ray, &hit, &media));
             let (mut left, mut pane) = (1.0, 0.0);
             if let Some(ClassifiedHit::Surface { hit, outside, .. }) = &met {
                 pane = straight(self.scene, &ray, hit, *outside);
@@ -207,10 +182,19 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
         weights.carried = Rgb::ZERO;
     }
 
+    /// Classify a hit. Without media or nested dielectrics, each is a surface in empty space.
+    fn meet(&self, ray: &Ray, hit: &Hit, media: &MediumStack<Filled>) -> ClassifiedHit {
+        let needs = self.scene.plan().needs();
+        if needs.media || needs.nested {
+            return meet(self.scene, ray, hit, media);
+        }
+        ClassifiedHit::Surface { hit: *hit, outside: 1.0, through: *media, beyond: hit.t.next_up() }
+    }
+
     /// Return the transmitted share of some light along a ray that starts in given media, unbiased in heterogeneous
     /// media. The light may have been sampled by another wavelength. The mean of the product is the product of the
     /// means only for independent choices.
-    pub async fn through(
+    pub fn through(
         &self,
         light: Rgb,
         ray: Ray,
@@ -219,7 +203,7 @@ impl<A: TraceRays> MediumTraversal<'_, A> {
         cancel: &Cancel,
     ) -> Rgb {
         let mut weights = Weights { carried: light, ..Weights::START };
-        self.shadow(ray, media, &mut weights, &mut None, numbers, cancel).await;
+        self.shadow(ray, media, &mut weights, &mut None, numbers, cancel);
         weights.carried / weights.asked.mean()
     }
 }

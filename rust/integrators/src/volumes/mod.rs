@@ -5,7 +5,6 @@
 //! of the three densities (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014; Miller, Georgiev and Jarosz, "A
 //! Null-Scattering Path Integral Formulation of Light Transport", 2019).
 
-mod batch_executor;
 mod camera_paths;
 mod direct_light;
 mod equiangular;
@@ -33,7 +32,7 @@ use super::known_light::KnownLight;
 use super::media::equiangular::PointLights;
 use super::path_settings::PathSettings;
 use super::{Job, Session, Worker};
-use camera_paths::Walkers;
+use camera_paths::Walker;
 use raywright_scene::{Footprint, Scene};
 use std::sync::Arc;
 
@@ -59,6 +58,13 @@ impl<'a> OneByOne<'a> {
 
 impl Session for OneByOne<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(Walkers::new(self.settings, (self.scene, self.footprint), &self.points, self.known.as_deref()))
+        let footprint = self.scene.plan().needs().points.width.then_some(self.footprint);
+        Box::new(Walker {
+            settings: self.settings,
+            scene: self.scene,
+            footprint,
+            points: &self.points,
+            known: self.known.as_deref(),
+        })
     }
 }

@@ -6,7 +6,6 @@ use super::medium_traversal::MediumTraversal;
 use super::vertex::Vertex;
 use crate::light_paths::{Dimensions, EmissionDimensions, Limits, Onward, weight};
 use crate::media::path_numbers::PathNumbers;
-use crate::media::ray_tracer::at_once;
 use crate::{Job, LightWorker, Splat};
 use raywright_base::math::{DVec3, Ray};
 use raywright_base::sampling::Sampler;
@@ -125,7 +124,7 @@ impl<'a> MediaVisitor<'a> for Connections<'a> {
         }
         let segment = at.leaving(at.origin().segment(&RayOrigin::free(seen.origin)), Ray::NO_TRIANGLE);
         let course = MediumTraversal { roulette: at.is_in_medium(), ..MediumTraversal::alone(scene, path.waves()) };
-        let light = at_once(course.through(light, segment, at.media(direction), numbers, cancel));
+        let light = course.through(light, segment, at.media(direction), numbers, cancel);
         let light = path.waves().map_or(light, |waves| waves.seen(light));
         if light != Rgb::ZERO && light.is_finite() {
             self.splats.push(Splat { film: seen.film, light });

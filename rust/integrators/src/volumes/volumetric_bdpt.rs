@@ -5,13 +5,12 @@
 
 use super::light_partials::LightEnd;
 use super::light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-use super::medium_traversal::{MediumTraversal, Nobody, RaySegmentState, TraversalEnd};
+use super::medium_traversal::{MediumTraversal, RaySegmentState, TraversalEnd};
 use super::vertex::{Point, Vertex};
 use crate::dimensions::Dimensions;
 use crate::light_paths::{self, Arrived, Limits, Onward, Partial, of_asked, weight};
 use crate::media::current_medium::Filled;
 use crate::media::path_numbers::{PathNumbers, depth};
-use crate::media::ray_tracer::at_once;
 use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::terminate_wavelengths::Parting;
@@ -216,8 +215,7 @@ impl<'a> BothEnds<'a> {
         let u = sample.numbers.ray.mask();
         let way = (sample.hero, depth(sample.numbers.one(u)));
         let course = self.course(path.waves_with(false));
-        let lit = None::<&Nobody>;
-        let place = at_once(course.advance(&mut path.going, way, sample.numbers, sample.cancel, light, lit));
+        let place = course.advance(&mut path.going, way, sample.numbers, sample.cancel, light, None);
         let RaySegmentState { ray, media, .. } = path.going;
         let mut parting = None;
         let at = match place {
@@ -412,7 +410,7 @@ impl<'a> BothEnds<'a> {
         }
         let media = at.media(ray.direction);
         let course = MediumTraversal { roulette, ..self.course(waves) };
-        let light = at_once(course.through(light, ray, media, sample.numbers, sample.cancel));
+        let light = course.through(light, ray, media, sample.numbers, sample.cancel);
         if light.is_finite() { light } else { Rgb::ZERO }
     }
 
