@@ -1,4 +1,4 @@
-//! How integrators that follow paths from the camera begin.
+//! Sessions of integrators that follow paths from the camera.
 
 use super::known_light::KnownLight;
 use super::path_settings::PathSettings;

@@ -1,4 +1,4 @@
-//! What camera rays come to first.
+//! Shapes that camera rays hit first.
 
 use crate::CameraSample;
 use crate::dimensions::Dimensions;
@@ -8,7 +8,7 @@ use raywright_base::math::{Hit, RayQueue};
 use raywright_scene::Scene;
 
 /// Finds the shape that each camera ray comes to first, past what of masks is open to it and past surfaces that are
-/// none because another medium is there. What it decides by chance, it decides as paths do.
+/// none because another medium is there. Random decisions are those of paths.
 pub struct FirstSeen<'a> {
     scene: &'a Scene,
     passing: Passing,
@@ -65,7 +65,7 @@ impl<'a> FirstSeen<'a> {
         }
     }
 
-    /// Takes rays to what they have hit; those that pass it are on their way again.
+    /// Takes rays to their hits; those that pass these go on.
     fn meet(&mut self, samples: &mut [CameraSample], seen: &mut [Option<u32>]) {
         self.passing.begin(self.scene, &self.rays, &self.hits);
         let mut further = RayQueue::default();

@@ -8,33 +8,33 @@ use raywright_optics::spectra::Waves;
 use raywright_scene::SurfaceInteraction;
 use raywright_scene::materials::BsdfMix;
 
-/// What becomes of paths where light is known.
+/// Use of known light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gather {
     /// Number of final gather rays, into which a path is split at the first matte surface; none goes on from the
     /// second. 0 where none goes on.
     pub rays: u32,
-    /// Whether light that has come by way of specular surfaces alone is known at the first.
+    /// True if the first look-up has light through specular surfaces, as from a caustic map.
     pub caustic: bool,
 }
 
 /// A path that has come to where light is known.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Visit {
-    /// Which sample of its pixel it is of.
+    /// Sample index within its pixel.
     pub number: u32,
-    /// Whether final gather rays start there, so that they find what surfaces send each other.
+    /// True if final gather rays start there, which find interreflected light.
     pub looks_about: bool,
-    /// Whether the path has been at a surface whose reflectance is above 1 in a channel
+    /// True if the path has met a surface with a reflectance above 1 in a channel
     /// ([`raywright_optics::Bsdf::repeat_correction`]).
     pub has_gamut_excess: bool,
-    /// Whether the hero of its wavelengths is all that it carries.
+    /// True if the hero is its only wavelength left.
     pub single: bool,
-    /// Number of surfaces that may have scattered light before.
+    /// Maximum number of earlier scattering events.
     pub bounces: Option<u32>,
 }
 
-/// What is known: at matte surfaces all light but direct light, and in media all light.
+/// Known light: at matte surfaces all but direct light, and in media all.
 pub(crate) trait KnownLight: Send + Sync {
     /// Return the radiance scattered back along a ray by a surface.
     fn at_surface(&self, here: &SurfaceInteraction<&BsdfMix>, visit: Visit) -> Rgb;

@@ -68,18 +68,18 @@ use raywright_optics::Rgb;
 use raywright_scene::{Camera, Footprint, Scene};
 use std::ops::Range;
 
-/// What there is to be rendered.
+/// A picture to be rendered.
 #[derive(Clone, Copy)]
 pub struct Job<'a> {
-    /// What is looked at.
+    /// The scene.
     pub scene: &'a Scene,
     /// What looks.
     pub camera: &'a dyn Camera,
     /// That of the camera's rays, for the filtering of textures.
     pub footprint: Footprint,
-    /// Which of all possible pictures.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// How many samples of a pixel, from its first on, belong together: only between these is their spread told.
+    /// Number of samples of a pixel, from its first on, in a batch; the spread between batches tells the error.
     pub batch: u32,
 }
 
@@ -95,21 +95,20 @@ impl<'a> Job<'a> {
 /// A way to turn rays into radiance.
 pub trait Integrator: Send + Sync {
     /// Begins to work on a picture: makes all that its workers share. That may take long, on the current pool of
-    /// threads; it returns soon after `cancel` is raised, with what is of no use.
+    /// threads; it returns soon after `cancel` is raised, with a session of no use.
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a>;
 
-    /// Why it cannot take a picture of a scene, or none whose pixels have as many samples as their errors ask for, if
-    /// that is so: what the one is, and what to do instead.
+    /// Return an objection to a scene, or to adaptive sampling of it, and what to do instead, if it cannot render that.
     fn objection(&self, _scene: &Scene, _adaptive: bool) -> Option<String> {
         None
     }
 
-    /// Whether it knows of media, which dim and scatter light between surfaces.
+    /// Return whether it supports media.
     fn takes_media(&self) -> bool {
         false
     }
 
-    /// Whether its paths know of wavelengths, or nothing that it shows depends on these.
+    /// Return whether it supports wavelengths, or shows nothing that depends on these.
     fn takes_waves(&self) -> bool {
         false
     }
@@ -131,16 +130,16 @@ pub trait Integrator: Send + Sync {
         None
     }
 
-    /// Whether workers must run on the thread that asked for the picture, as what is written in Python must. They are
-    /// then handed batches of tens of thousands of samples, and may raise the cancel themselves to end the render.
+    /// Return whether workers must run on the calling thread, as Python code must. They are then handed batches of tens
+    /// of thousands of samples, and may raise the cancel themselves to end the render.
     fn runs_on_caller(&self) -> bool {
         false
     }
 }
 
-/// An integrator at work on a picture, and what all of its threads share.
+/// An integrator at work on a picture: the data shared by its threads.
 pub trait Session: Send + Sync {
-    /// What one thread works with: the memory that it needs, to be used again and again.
+    /// Return the state of one thread.
     fn worker(&self) -> Box<dyn Worker + '_>;
 
     /// Called before each pass, when so many samples of each pixel are done, and again if it has to be begun anew. What
@@ -163,7 +162,7 @@ pub trait Session: Send + Sync {
         None
     }
 
-    /// What one thread follows paths from lights with; none where nothing comes to the film but by its own rays.
+    /// Return the state of one thread for paths from lights; `None` if the integrator has none.
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
         None
     }

@@ -1,10 +1,9 @@
-//! What integrators that follow paths from the camera choose.
+//! Settings of integrators that follow paths from the camera.
 
 use super::known_light::Gather;
 use raywright_optics::Rgb;
 
-/// Which of the directions that surfaces scatter into are followed. Light from the others is sampled directly, at light
-/// sources alone.
+/// Directions that are followed. Light from others is found by light sampling alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Follow {
     /// All.
@@ -24,25 +23,25 @@ pub(super) struct PathSettings {
     pub max_depth: Option<u32>,
     /// Number of bounces after which Russian roulette starts.
     pub roulette_depth: u32,
-    /// Whether media scatter light; else they only dim it.
+    /// True if media scatter light; else they only dim it.
     pub scatters: bool,
     /// Number of light samples at the first surface.
     pub light_samples: u32,
     /// Number of paths that go on from the first surface.
     pub splits: u32,
-    /// Which directions are followed.
+    /// Directions that are followed.
     pub follow: Follow,
-    /// Whether what lies on the way to a light shadows it.
+    /// True if surfaces block light samples.
     pub shadows: bool,
-    /// Uniform radiance in place of what is not followed, where it is scattered diffusely.
+    /// Uniform radiance in place of light that is not followed, where it is scattered diffusely.
     pub ambient: Rgb,
     /// Minimum contribution of a path in any color; others end.
     pub least: f64,
-    /// Whether paths of a group share what they find, in scenes where they can ([`super::path_sharing::can_share`]).
+    /// True if paths of a group share radiance, in scenes where they can ([`super::path_sharing::can_share`]).
     pub shares: bool,
-    /// Whether paths are guided to where light comes from by way of mirrors and glass.
+    /// True if paths are guided to light through mirrors and glass.
     pub guided: bool,
-    /// What becomes of paths where light is known already; `None` where none is.
+    /// Use of known light; `None` without.
     pub gather: Option<Gather>,
 }
 
@@ -70,7 +69,7 @@ impl PathSettings {
         Self { scatters: false, ..Self::path(Some(max_depth), u32::MAX) }
     }
 
-    /// Whether matte surfaces need no more than the stages of [`super::wavefront`] for these.
+    /// Return whether matte surfaces take their own, simpler stages.
     pub fn are_plain(&self) -> bool {
         self.light_samples == 1
             && self.ambient.is_black()
@@ -79,12 +78,12 @@ impl PathSettings {
             && matches!(self.follow, Follow::All | Follow::Nothing)
     }
 
-    /// Whether one path may go on as several.
+    /// Return whether one path may go on as several.
     pub fn may_split(&self) -> bool {
         self.splits > 1 || self.follow == Follow::DeltaLobes || self.gather.is_some()
     }
 
-    /// The density above which directions are followed, or at.
+    /// Return the minimum density of directions that are followed.
     pub fn least_pdf(&self) -> f64 {
         match self.follow {
             Follow::All => 0.0,

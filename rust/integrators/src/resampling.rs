@@ -10,8 +10,8 @@ use raywright_optics::{Rgb, RgbLanes};
 /// brings anything. `choice` is uniform in [0, 1).
 ///
 /// Each draw in turn takes the place of the one kept before (Chao, "A General Purpose Unequal Probability Sampling
-/// Plan", 1982), and what is left of the number once it has decided is uniform again. What is not finite is kept, so
-/// that it is not hidden.
+/// Plan", 1982), and what is left of the number once it has decided is uniform again. A draw that is not finite is
+/// kept, so that it is not hidden.
 #[derive(Clone, Copy, Debug)]
 struct Resampled {
     choice: f64,
@@ -26,7 +26,7 @@ impl Resampled {
     /// In place of a draw's number where there is none.
     const NONE: u64 = u64::MAX;
 
-    /// Of one draw more. Lanes have no branches: all is computed, and what counts is taken.
+    /// Of one draw more. Lanes have no branches: all is computed, and the result is selected.
     #[inline(always)]
     fn add(self, draw: u64, brings: Rgb) -> Self {
         let counts = !brings.is_black();
@@ -86,7 +86,7 @@ impl ResampledLanes {
         self.strength[i] = one.strength;
     }
 
-    /// The number of the draw that is kept in a lane, and what it stands for.
+    /// Return the draw that is kept in a lane, and its light as that of all.
     #[inline]
     pub fn kept(&self, lane: usize) -> Option<(usize, Rgb)> {
         let one = self.get(lane);

@@ -27,7 +27,8 @@ impl WavefrontWorker<'_> {
         if bounce == 0 { self.settings.light_samples } else { 1 }
     }
 
-    /// Stage: which directions sixteen paths follow, and what of light is known where they are.
+    /// Stage: adds ambient and known light at sixteen surfaces, and sets the densities from which on their paths are
+    /// followed.
     pub(super) fn look_up_light(&mut self, bounce: u32, radiance: &mut [Rgb]) {
         if self.is_plain {
             return;
@@ -40,7 +41,7 @@ impl WavefrontWorker<'_> {
             let Self { block, scene, known, samplers, .. } = self;
             let bsdf = &mut block.bsdf;
             bsdf.follows[lane] = f64::from(splits) / f64::from(drawn);
-            // What is known is scattered by all but delta lobes.
+            // Known light is scattered by all lobes but delta lobes.
             bsdf.least_pdf[lane] = if is_known && !looks_about { f64::INFINITY } else { least_pdf };
             bsdf.asks[lane] &= !self.settings.gather.is_some_and(|gather| is_lit(&gather, bsdf, lane, is_known));
             let Some((ray, hit, here)) = block.bsdf.interaction(lane) else { continue };
@@ -64,18 +65,19 @@ impl WavefrontWorker<'_> {
         }
     }
 
-    /// Whether light at the surface of a lane is known.
+    /// Return whether light at the surface of a lane is known.
     fn is_known(&self, lane: usize) -> bool {
         self.settings.gather.is_some() && is_matt(self.block.bsdf.get(lane))
     }
 
-    /// Whether final gather rays start at the surface of a lane.
+    /// Return whether final gather rays start at the surface of a lane.
     fn looks_about(&self, lane: usize) -> bool {
         let looks = self.settings.gather.is_some_and(|gather| gather.rays > 0);
         looks && self.block.bsdf.flags[lane] & Flags::IS_GATHERED == 0 && self.is_known(lane)
     }
 
-    /// Into how many the path of a lane is split; they would not differ where only delta lobes scatter.
+    /// Return the number of paths that a path is split into; a surface with delta lobes alone splits none, as they
+    /// would not differ.
     fn splits(&self, bounce: u32, lane: usize) -> u32 {
         match self.settings.gather {
             Some(gather) if self.looks_about(lane) => gather.rays.max(1),
@@ -85,9 +87,9 @@ impl WavefrontWorker<'_> {
         }
     }
 
-    /// Whether the path of a lane follows every delta lobe. With known light it does so at glass, as one of the first
-    /// surfaces: paths are cheap there beside what is known, and a lamp that is seen after two or three reflections
-    /// within glass would be met once in a thousand samples, all the brighter.
+    /// Return whether the path of a lane follows every delta lobe. With known light it does so at glass, as one of the
+    /// first surfaces: a path costs less than a look-up there, and a lamp behind two or three reflections within glass
+    /// would be found by one sample in a thousand, a thousand times as bright.
     fn follows_each_lobe(&self, bounce: u32, lane: usize) -> bool {
         const SURFACES: u32 = 3;
         if self.settings.follow == Follow::DeltaLobes {
@@ -99,7 +101,7 @@ impl WavefrontWorker<'_> {
         self.settings.gather.is_some() && bsdf.is_delta() && bsdf.transmits() && is_early && !is_gathered
     }
 
-    /// Stage: sixteen paths go on, each in as many ways as it splits into.
+    /// Stage: sixteen paths go on, each by all of its continuations.
     pub(super) fn scatter_in_all_ways(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32) {
         if self.is_plain {
             return self.scatter_from_any(numbers, bounce, samples, None);
@@ -118,7 +120,7 @@ impl WavefrontWorker<'_> {
         self.ways = ways;
     }
 
-    /// Finds the ways in which the path of a lane goes on.
+    /// Finds the continuations of the path of a lane.
     fn find_ways(&mut self, bounce: u32, lane: usize, ways: &mut Vec<Way>) {
         let sample = self.block.sample;
         let before = self.branches.as_ref().map_or(0, |branches| branches.number(sample[lane]));
@@ -159,8 +161,7 @@ impl WavefrontWorker<'_> {
         self.branches.as_mut().map_or(sample, |branches| branches.split(sample, number))
     }
 
-    /// Stage: of sixteen paths that go on by one of several ways, what becomes of their densities and flags. Those that
-    /// contribute too little end.
+    /// Stage: weighs one continuation of sixteen paths by their number, and ends those with too small a contribution.
     pub(super) fn weigh_ways(&mut self, bounce: u32) {
         for lane in 0..self.block.surfaces.count {
             let (splits, is_known) = (self.splits(bounce, lane), self.is_known(lane));
@@ -184,7 +185,7 @@ impl WavefrontWorker<'_> {
     }
 }
 
-/// Whether what lights send to the surface of a lane was known where its path became a final gather ray.
+/// Return whether direct light at a surface was part of the look-up that its final gather ray started from.
 fn is_lit(gather: &Gather, bsdf: &BsdfBlock<'_>, lane: usize, is_known: bool) -> bool {
     gather.caustic && !is_known && bsdf.flags[lane] & Flags::IS_GATHERED != 0
 }

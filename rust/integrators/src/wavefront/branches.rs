@@ -9,7 +9,8 @@ pub(super) struct Branches {
     number: Vec<u32>,
 }
 
-/// More samples than any batch has. What is found for sharing has numbers after those of all samples: there is none.
+/// More samples than any batch has. Shared radiance has numbers after those of all samples; paths that split share
+/// none.
 pub(super) const MOST: u32 = 1 << 30;
 
 impl Branches {
@@ -21,7 +22,7 @@ impl Branches {
         self.number.resize(samples, 0);
     }
 
-    /// How many samples there are.
+    /// Return the number of samples.
     pub fn len(&self) -> usize {
         self.of.len()
     }

@@ -17,7 +17,7 @@ use raywright_scene::materials::{BsdfLanes, BsdfMix};
 use raywright_scene::{Footprint, LightBlock, LookupContext, Scene, SurfaceBlock, SurfaceInteraction};
 use std::borrow::Cow;
 
-/// How sixteen surfaces scatter.
+/// The BSDFs of sixteen surfaces.
 pub(super) struct BsdfBlock<'a> {
     bsdf: BsdfLanes<'a>,
     drawn: BsdfSampleLanes,
@@ -29,7 +29,7 @@ pub(super) struct BsdfBlock<'a> {
     /// Where light is asked for, and where each of few lights is.
     pub asks: [bool; LANES],
     pub asks_each: [bool; LANES],
-    /// The densities from which on directions are followed, and the number of paths in these for each light sample.
+    /// Minimum density of directions that are followed, and number of paths in these for each light sample.
     pub least_pdf: [f64; LANES],
     pub follows: [f64; LANES],
     /// Normals that light is drawn by: zero where a surface transmits.
@@ -56,7 +56,8 @@ pub(super) struct Scattered {
 }
 
 loops! {
-    /// What arrives of light that was drawn. The product is in f64: next to a mirror, f32 does not hold its factors.
+    /// Light samples times throughput, BSDF and MIS weight. The product is in f64: next to a mirror, f32 does not hold
+    /// its factors.
     fn weigh(
         throughput: &SingleLanes,
         lights: &LightBlock,
@@ -81,7 +82,7 @@ loops! {
 }
 
 loops! {
-    /// From what was drawn to the paths that go on; those whose directions do not count end.
+    /// From BSDF samples to the paths that go on; those with directions that do not count end.
     fn leave(
         surfaces: &SurfaceBlock,
         throughput: &SingleLanes,
@@ -241,8 +242,8 @@ impl<'a> BsdfBlock<'a> {
         self.bsdf.get(lane)
     }
 
-    /// What arrives of light that was drawn, in some lanes, if nothing blocks it: a share of it. `is_found` tells
-    /// whether paths find it by chance too.
+    /// Weighs light samples in some lanes, as a share of all samples there. `is_found` is true if paths may hit the
+    /// light too.
     pub fn reflect(
         &mut self,
         level: Level,
@@ -317,22 +318,22 @@ impl<'a> BsdfBlock<'a> {
         self.frames.wo.get(lane)
     }
 
-    /// Whether the path of a lane has come to a surface that reflects more than arrives, in a channel.
+    /// Return whether the path of a lane has met a surface with a reflectance above 1 in a channel.
     pub fn has_gamut_excess(&self, lane: usize) -> bool {
         self.flags[lane] & Flags::HAS_GAMUT_EXCESS != 0
     }
 
-    /// Whether a direction was drawn in a lane.
+    /// Return whether a direction was drawn in a lane.
     pub fn goes_on(&self, lane: usize) -> bool {
         self.drawn.pdf[lane] > 0.0
     }
 
-    /// Whether the path of a lane goes on in a single direction.
+    /// Return whether the path of a lane follows a delta lobe.
     pub fn is_single(&self, lane: usize) -> bool {
         self.drawn.pdf[lane] == f64::INFINITY
     }
 
-    /// Whether the path of a lane goes on behind its surface.
+    /// Return whether the path of a lane is transmitted.
     pub fn is_through(&self, lane: usize) -> bool {
         self.goes_on(lane) && self.drawn.is_through[lane]
     }

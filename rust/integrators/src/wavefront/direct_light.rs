@@ -15,8 +15,8 @@ pub(super) fn power_heuristic(pdf: f32, other: f32) -> f32 {
 }
 
 loops! {
-    /// What a matte surface reflects of light that was drawn. `follows` is 1, or 0 if paths end there and no light is
-    /// found by chance; `is_lit` is all bits where that is anything.
+    /// Light samples times throughput, matte BSDF and MIS weight. `follows` is 1, or 0 if paths end there and no light
+    /// is found by chance; `is_lit` is all bits where that is anything.
     pub(super) fn reflect(
         surfaces: &SurfaceBlock,
         lights: &LightBlock,

@@ -22,12 +22,12 @@ fn waves_of(queue: &PathQueue, waves: &[PathWaves], path: usize) -> Option<Waves
     waves.get(queue.sample[path] as usize).map(|waves| waves.now)
 }
 
-/// Whether what shines at the end of a path was known where that became a final gather ray.
+/// Return whether emission at the end of a path was part of the look-up that its final gather ray started from.
 fn is_known(queue: &PathQueue, path: usize) -> bool {
     queue.flags.get(path).is_some_and(|flags| flags & Flags::IS_LIT != 0)
 }
 
-/// Whether each of few lights was asked where a path set out.
+/// Return whether each of few lights was sampled at the start of a path's ray.
 fn asked_each(queue: &PathQueue, path: usize) -> bool {
     queue.flags.get(path).is_some_and(|flags| flags & Flags::ASKED_EACH != 0)
 }

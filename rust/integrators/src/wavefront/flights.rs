@@ -1,5 +1,5 @@
 //! Rays on their way through media: paths to their next events, and shadow rays to lights. All take one step at a time,
-//! up to what each hits first.
+//! up to their first hits.
 
 use super::medium_stacks::MediumStacks;
 use super::queues::Extra;
@@ -38,7 +38,7 @@ pub(super) struct FlightQueue {
     pub all: Vec<Flight>,
 }
 
-/// What one thread needs for the flights of a batch.
+/// Per-thread state of the flights of a batch.
 pub(super) struct Flights<'a> {
     pub stacks: MediumStacks<'a>,
     pub now: FlightQueue,
@@ -65,7 +65,7 @@ pub(super) struct Interface {
     pub through: u32,
     /// Index of refraction outside of the object, or around an open one; `None` at a mere boundary of media.
     pub outside: Option<f64>,
-    /// Whether some rays pass though it is a surface: through a mask or a thin pane.
+    /// True if it is a surface that some rays pass, as a mask or a thin pane.
     pub may_pass: bool,
 }
 
@@ -74,7 +74,7 @@ pub(super) struct Interface {
 struct KnownInterface {
     of: (u32, u32, bool),
     interface: Interface,
-    /// Whether it is that only where nothing else is near.
+    /// True if it holds only where nothing else is near.
     is_closed: bool,
 }
 
@@ -91,7 +91,7 @@ pub(super) struct Stop<'s> {
     pub primitive: u32,
     /// The whole hit, if that is known already.
     hit: Option<Hit>,
-    /// The lane in which the rest is known.
+    /// The lane with the rest of it.
     lane: usize,
 }
 
@@ -199,7 +199,7 @@ impl<'a> Flights<'a> {
         }
     }
 
-    /// Find what all flights hit first.
+    /// Find the first hits of all flights.
     pub fn find_closest(&mut self, scene: &Scene, level: Level) {
         let rays = &self.now.rays;
         self.primitives.resize(rays.len + LANES, 0);
@@ -225,7 +225,7 @@ impl<'a> Flights<'a> {
         }
     }
 
-    /// Takes all flights one step: up to what each hits first. Those that pass it are the next.
+    /// Takes all flights one step, up to their first hits. Those that pass these are the next.
     pub fn step(&mut self, scene: &Scene, level: Level, traveller: &mut dyn Traveller) {
         self.find_closest(scene, level);
         self.next.clear();
@@ -271,7 +271,7 @@ impl<'a> Flights<'a> {
             return;
         }
         let unclear = std::mem::take(&mut self.unclear);
-        // What is near is told by `t` to the last bit.
+        // Nearness is decided by `t` to the last bit.
         let rays: Vec<Ray> = unclear.iter().map(|&(_, ray)| ray).collect();
         let mut hits = vec![Hit::MISS; rays.len()];
         scene.intersect(&rays, &mut hits);

@@ -12,7 +12,7 @@ use std::array::from_fn;
 pub(super) struct GuidedBlock<'a> {
     guide: Option<&'a Guide>,
     locals: [Option<LocalGuide<'a>>; LANES],
-    /// How much denser directions were drawn than surfaces scatter into them, since the last matte one.
+    /// Ratio of the density of sampled directions to that of BSDF sampling, since the last matte surface.
     pub aimed: [f32; LANES],
     /// Where roulette was played already, and where it ended the path.
     pub has_played: [bool; LANES],
@@ -36,8 +36,8 @@ impl<'a> GuidedBlock<'a> {
     /// A path comes to the surface of a lane.
     ///
     /// One that was aimed and has come to a matte surface has missed what it was aimed at, or has found what is
-    /// brightly lit. Roulette lets it go on by what it brings, counted for more where more light comes to this place
-    /// than to others. Other paths are left to the roulette that all paths play.
+    /// brightly lit. Roulette continues it by its contribution, multiplied by a gain where more light arrives than
+    /// elsewhere. Other paths are left to the roulette that all paths play.
     pub fn arrive(
         &mut self,
         lane: usize,
@@ -73,13 +73,13 @@ impl<'a> GuidedBlock<'a> {
         self.locals[lane].as_ref().map_or(pdf, |local| pdf + local.share() * (local.pdf(level, direction) - pdf))
     }
 
-    /// Whether any surface has a guide.
+    /// Return whether any surface has a guide.
     #[inline]
     pub fn is_here(&self) -> bool {
         self.guide.is_some() && self.locals.iter().any(Option::is_some)
     }
 
-    /// Which of the lanes that go on aim, by their choices; what is left of these is uniform again.
+    /// Return the lanes that aim, by their choices, which are rescaled to be uniform again.
     pub fn aims(&self, goes: &[bool; LANES], choice: &mut [f64; LANES]) -> [bool; LANES] {
         from_fn(|lane| {
             let Some(local) = self.locals[lane].as_ref().filter(|_| goes[lane]) else { return false };
@@ -96,8 +96,8 @@ impl<'a> GuidedBlock<'a> {
         self.locals[lane].as_ref().map(|local| local.sample(choice, u))
     }
 
-    /// Gives what a surface has drawn the density of aiming and scattering together (Veach and Guibas, 1995: the
-    /// one-sample model); `direction` is in the world.
+    /// Gives a BSDF sample the density of aiming and scattering together (Veach and Guibas, 1995: the one-sample
+    /// model); `direction` is in the world.
     pub fn mix(&mut self, level: Level, lane: usize, direction: DVec3, drawn: &mut BsdfSampleLanes) {
         let Some(local) = self.locals[lane] else { return };
         let pdf = drawn.pdf[lane];

@@ -4,7 +4,7 @@ use crate::shadows::Shadows;
 use raywright_base::math::{Hit, Ray};
 use raywright_scene::Scene;
 
-/// What one thread needs where a scene has masks.
+/// Per-thread state of masks.
 pub(super) struct Masks {
     /// By shape, whether it may have any.
     pub shapes: Vec<bool>,

@@ -7,7 +7,7 @@ use raywright_base::simd::loops;
 use raywright_scene::{Scene, SurfaceBlock};
 use std::f32::consts::FRAC_1_PI;
 
-/// What each shape reflects on the front and on the back.
+/// Reflectances of each shape's front and back.
 pub(super) struct Reflectances(Vec<[Vec3; 2]>);
 
 impl Reflectances {
@@ -28,7 +28,7 @@ impl Reflectances {
 }
 
 loops! {
-    /// Draws directions by the cosine, each of which keeps the reflectance of the throughput.
+    /// Draws directions by the cosine; each multiplies the throughput by the reflectance.
     pub(super) fn sample(
         normal: &SingleLanes,
         u: &[[f32; LANES]; 2],

@@ -28,7 +28,7 @@ pub(super) struct Media<'a> {
     pub spans: Vec<ScatteringSpan>,
     /// Shadow rays from places on the ways of paths to point lights.
     pub on_the_way: FlightQueue,
-    /// What paths of a group share, if they do.
+    /// State of path sharing, if paths share.
     pub sharing: Option<MediaSharing>,
 }
 
@@ -40,12 +40,12 @@ pub(super) struct PathMedia {
     pub through: u32,
     /// Index of refraction outside of the object that it has come to.
     pub outside: f64,
-    /// Which color samples distances.
+    /// The color that samples distances.
     pub hero: usize,
     /// Density of the path for each color as the hero, relative to the mean of the three.
     pub drawn: Rgb,
-    /// Whether it leaves the first vertex that it shares; and the share of its way in the medium, if it has come from
-    /// there to a surface that may share as well.
+    /// True if it leaves the first vertex that it shares; and the share of its way in the medium, if it came from there
+    /// to a surface that may share.
     pub is_first: bool,
     pub shares: Option<f64>,
 }
@@ -61,7 +61,7 @@ pub(super) struct MediumScattering {
     pub phase: Phase,
     /// Coefficients of a homogeneous medium.
     pub even: Option<Coefficients>,
-    /// Whether it is the second vertex that the path shares.
+    /// True at the second vertex that the path shares.
     pub is_second: bool,
 }
 
@@ -89,7 +89,7 @@ impl<'a> Media<'a> {
         self.is_within.resize(paths, false);
     }
 
-    /// Those of a scene; `None` where all is empty space, and what glass there is stands apart.
+    /// Those of a scene; `None` where all is empty space, but for glass objects that stand apart.
     pub fn of(scene: &'a Scene, shares: bool, scatters: bool, extra: Extra) -> Option<Self> {
         let needs = scene.plan().needs();
         (needs.media || needs.nested).then(|| Self {

@@ -20,8 +20,8 @@ impl MediaSharing {
         self.vertices.resize(samples, SharedVertices::default());
     }
 
-    /// Adds to the radiance of each sample its share of what its group has found. `found` is what each path has found
-    /// beyond its second vertex, and then the light that was drawn there.
+    /// Adds to the radiance of each sample its share of that of its group. `found` is the radiance of each path beyond
+    /// its second vertex, and then of the light samples there.
     pub fn share(&mut self, scene: &Scene, groups: &[u32], found: &[Rgb], cancel: &Cancel, radiance: &mut [Rgb]) {
         let (onward, lit) = found.split_at(self.vertices.len());
         for (vertices, (&onward, &lit)) in self.vertices.iter_mut().zip(onward.iter().zip(lit)) {
@@ -37,7 +37,7 @@ impl MediaSharing {
         self.vertices[sample as usize].second.as_mut()
     }
 
-    /// Whether a path that comes from its first vertex to a surface stays in the medium, or leaves it just once.
+    /// Return true if a path from its first vertex to a surface stays in the medium, or leaves it just once.
     pub fn is_within_reach(&self, sample: u32, passed: u32, is_outside: bool) -> bool {
         let first = &self.vertices[sample as usize].first;
         passed == 0 || passed == 1 && is_outside && first.as_ref().is_some_and(|first| first.is_alone)

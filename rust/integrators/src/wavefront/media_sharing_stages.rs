@@ -7,7 +7,7 @@ use raywright_base::math::Vec3;
 use raywright_optics::Rgb;
 
 impl WavefrontWorker<'_> {
-    /// Whether paths of groups share anything.
+    /// Return whether paths of groups share anything.
     pub(super) fn shares(&self) -> bool {
         self.sharing.is_some() || self.media.as_ref().is_some_and(|media| media.sharing.is_some())
     }

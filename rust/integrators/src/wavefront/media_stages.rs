@@ -20,7 +20,7 @@ use raywright_optics::Rgb;
 use raywright_scene::Scene;
 use std::ops::Range;
 
-/// Paths on their flights, and what these write.
+/// Paths on their flights, and the columns that these write.
 struct PathFlights<'w, 'a> {
     scene: &'a Scene,
     samples: u32,
@@ -33,7 +33,7 @@ struct PathFlights<'w, 'a> {
     samplers: &'w SamplerColumns,
     waves: &'w [PathWaves],
     media: &'w mut Media<'a>,
-    /// Whether points may light paths on their ways.
+    /// True if point lights are sampled along the ways of paths.
     is_lit: bool,
 }
 
@@ -126,7 +126,7 @@ impl Traveller for PathFlights<'_, '_> {
     fn reach(&self, flight: &Flight, stacks: &MediumStacks<'_>) -> f64 {
         let place = own(flight.sample, self.samples) as usize;
         let even = stacks.get(flight.media).even(self.waves.get(place).map(|waves| &waves.now));
-        // What is hit beyond the scattering event is not needed.
+        // Hits beyond the scattering event are not needed.
         let Some(here) = even.filter(|here| !self.is_lit && here.emission.is_black()) else { return f64::INFINITY };
         let way = flight.depth / here.extinction[self.media.paths[place].hero];
         (way * (1.0 + 1e-6)).next_up()

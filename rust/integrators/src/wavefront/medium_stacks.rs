@@ -11,7 +11,7 @@ use std::collections::HashMap;
 /// The combinations of media that points of a scene are in, each once.
 pub(super) struct MediumStacks<'a> {
     scene: &'a Scene,
-    /// Whether media scatter light, or only dim it.
+    /// True if media scatter light; else they only dim it.
     pub scatters: bool,
     all: Vec<KnownStack<'a>>,
     numbers: HashMap<[(u32, u32); MediumStack::<Filled>::MOST], u32>,

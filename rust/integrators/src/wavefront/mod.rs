@@ -41,13 +41,13 @@ use worker::WavefrontWorker;
 pub(super) struct Wavefront<'a> {
     job: Job<'a>,
     settings: PathSettings,
-    /// Where light comes from by way of what is sharp, if paths are guided and there is any.
+    /// Guide to light through specular surfaces, if paths are guided and there is any.
     guide: Option<Arc<Guide>>,
-    /// What is known of light at matte surfaces and in media, if anything is.
+    /// Known light at matte surfaces and in media, if any.
     known: Option<Arc<dyn KnownLight + 'a>>,
 }
 
-/// Radiances that f32 holds, with the squares of what follows from them.
+/// Radiances that f32 holds, with the squares of numbers that follow from them.
 const RADIANCES: std::ops::Range<f64> = 1e-15..1e15;
 
 impl<'a> Wavefront<'a> {
@@ -61,15 +61,14 @@ impl<'a> Wavefront<'a> {
         Self { job, settings, guide, known }
     }
 
-    /// Whether a picture is of a scene that has what stages know, and nothing else, seen so wide that f32 tells pixels
-    /// apart.
+    /// Return whether f32 holds the radiances of a scene, and tells the pixels of its picture apart.
     pub fn takes(job: &Job<'_>) -> bool {
         let mut radiances = job.scene.lights().radiances();
         tells_pixels_apart(job) && radiances.all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
     }
 }
 
-/// Whether pixels are so wide, at the distance of the scene, that directions in f32 miss none of them.
+/// Return whether pixels are so wide, at the distance of the scene, that directions in f32 miss none of them.
 fn tells_pixels_apart(job: &Job<'_>) -> bool {
     /// Roundings of a direction within a pixel.
     const ROUNDINGS: f64 = 64.0;

@@ -9,7 +9,7 @@ use raywright_optics::Rgb;
 pub(super) struct PathQueue {
     /// The ray that each is about to follow.
     pub rays: PathRays,
-    /// What of the radiance along its ray reaches its sample, by channel.
+    /// Throughput by channel: the factor from radiance along its ray to that of its sample.
     pub throughput: [Vec<f32>; 3],
     /// Density with which its direction was drawn; infinite for a camera's ray.
     pub pdf: Vec<f32>,
@@ -23,8 +23,7 @@ pub(super) struct PathQueue {
     /// scenes that have more than matte surfaces.
     pub scale: Vec<f32>,
     pub flags: Vec<u32>,
-    /// How much denser its directions were drawn than surfaces scatter into them ([`super::guided`]); where paths are
-    /// guided.
+    /// Ratio of the density of its directions to that of BSDF sampling ([`super::guided`]); where paths are guided.
     pub aimed: Vec<f32>,
     /// The bundle of neighboring rays at the origin of its ray: how wide it is, and how much wider it gets by length;
     /// where textures are filtered.
@@ -32,7 +31,7 @@ pub(super) struct PathQueue {
     pub spread: Vec<f32>,
 }
 
-/// Bits of what is known of a path.
+/// Flags of a path.
 pub(super) struct Flags;
 
 impl Flags {
@@ -44,18 +43,18 @@ impl Flags {
     pub const SINGLE: u32 = 4;
     /// It is a final gather ray, or goes on from one.
     pub const IS_GATHERED: u32 = 8;
-    /// What shines on it was known where it became a final gather ray.
+    /// Emission at its end was part of the look-up that its final gather ray started from.
     pub const IS_LIT: u32 = 16;
 }
 
-/// Which of the columns that few scenes need a queue has.
+/// The columns that few scenes need.
 #[derive(Clone, Copy)]
 pub(super) struct Extra {
     /// Normals.
     pub normal: bool,
     /// Scales and flags.
     pub state: bool,
-    /// How paths were aimed.
+    /// Aims of guided paths.
     pub aimed: bool,
     /// Widths and spreads.
     pub width: bool,
@@ -67,15 +66,14 @@ pub(super) struct Extra {
     pub media: bool,
 }
 
-/// Shadow rays, and what they bring if nothing blocks them.
+/// Shadow rays, and their light if nothing blocks it.
 pub(super) struct ShadowQueue {
     pub rays: PathRays,
     /// By channel.
     pub arriving: [Vec<f32>; 3],
     /// At whose sample.
     pub sample: Vec<u32>,
-    /// The media in which each starts, and the density of scattering in its direction over that of its draw; in scenes
-    /// with media.
+    /// Media at its start, and the density of scattering over that of light sampling; in scenes with media.
     pub media: Vec<u32>,
     pub ratio: Vec<f32>,
 }

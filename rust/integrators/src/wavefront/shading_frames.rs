@@ -1,4 +1,4 @@
-//! The frames in which sixteen surfaces scatter.
+//! Shading frames of sixteen surfaces.
 
 use raywright_base::math::{DVec3, Frame, Hit, LANES, PathRays, Ray, SingleLanes, VectorLanes};
 use raywright_base::simd::{Level, loops};

@@ -22,7 +22,7 @@ struct ShadowFlights<'w, 'a> {
     shadows: &'w ShadowQueue,
     waves: &'w [PathWaves],
     media: &'w mut Media<'a>,
-    /// What arrives, by place.
+    /// The light that arrives, by place.
     arriving: &'w mut [(u32, Rgb)],
 }
 
@@ -41,7 +41,7 @@ impl ShadowFlights<'_, '_> {
 }
 
 impl Traveller for ShadowFlights<'_, '_> {
-    /// What it hits may block it, which costs less to find.
+    /// A surface may block it, which costs less to find.
     fn travel(&mut self, _: &mut Flight, _: &MediumStacks<'_>, _: &Ray, _: f64) -> bool {
         true
     }
@@ -90,8 +90,8 @@ impl Traveller for ShadowFlights<'_, '_> {
 }
 
 impl WavefrontWorker<'_> {
-    /// Stage: shadow rays are followed through media, and what is left of their light is added. Only then the weight
-    /// beside scattering is known.
+    /// Stage: shadow rays are followed through media, and their transmitted light is added. Only then the weight beside
+    /// scattering is known.
     pub(super) fn follow_shadows_through_media(&mut self, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
         let (Some(media), Some(flights)) = (&mut self.media, &mut self.flights) else { return };
         let queue = &self.shadows;

@@ -24,7 +24,7 @@ pub(super) struct WavesBlock {
     pub waves: [Option<Waves>; LANES],
     /// The dispersion outside of the objects.
     pub around: [Dispersive; LANES],
-    /// What parts wavelengths, where it waits for how a path goes on; and where it does not wait.
+    /// Dispersion that waits for the direction of a path; and true where it does not wait.
     pub parting: [Option<Parting>; LANES],
     pub ends: [bool; LANES],
 }
@@ -52,7 +52,7 @@ pub(super) fn draw(
     }));
 }
 
-/// Makes of what was found at the wavelengths of samples what they look like.
+/// Converts radiances at the wavelengths of samples to RGB.
 pub(super) fn see(waves: &[PathWaves], radiance: &mut [Rgb]) {
     for (light, waves) in radiance.iter_mut().zip(waves) {
         *light = waves.first.seen(*light);

@@ -64,7 +64,7 @@ impl WavefrontWorker<'_> {
         let ended = Waves::ended(Rgb::from_array(throughput.as_dvec3().to_array()));
         let drawn =
             self.media.as_mut().map_or(Rgb::ONE, |media| std::mem::replace(&mut media.paths[sample].drawn, Rgb::ONE));
-        // Known light has the wavelengths of all samples of a number, any of which may be the hero.
+        // Known light shares its wavelengths with all samples of a number, and each may be the hero.
         if self.known.is_some() { ended.as_vec3() } else { (ended / drawn[0]).as_vec3() }
     }
 

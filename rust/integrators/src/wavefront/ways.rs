@@ -1,4 +1,4 @@
-//! Ways in which sixteen paths go on, of which each goes one or several.
+//! Continuations of sixteen paths: each has one or several.
 
 use raywright_base::math::LANES;
 use raywright_optics::{BsdfSample, BsdfSampleLanes};
@@ -8,7 +8,7 @@ use raywright_optics::{BsdfSample, BsdfSampleLanes};
 pub(super) struct Way {
     /// The samples that the paths become those of.
     pub sample: [u32; LANES],
-    /// Whether a direction is drawn.
+    /// True if a direction is drawn.
     pub is_drawn: [bool; LANES],
     /// Delta lobes that paths follow as they are.
     pub lobe: [Option<BsdfSample>; LANES],

@@ -27,31 +27,31 @@ use std::ops::Range;
 /// Paths that are taken together. 2,048 to 4,096 stay in the second cache, and fill every sixteen.
 pub(super) const BATCH: usize = 4096;
 
-/// What one thread works with.
+/// Per-thread state.
 pub(super) struct WavefrontWorker<'a> {
     pub(super) scene: &'a Scene,
     pub(super) level: Level,
     /// That of a camera's ray.
     pub(super) footprint: Footprint,
     pub(super) settings: PathSettings,
-    /// Whether paths go on from surfaces, and whether matte ones need no more than their own stages.
+    /// True if paths go on from surfaces; and true if matte surfaces need no more than their own stages.
     pub(super) follows: bool,
     pub(super) is_plain: bool,
-    /// What is known of light at matte surfaces and in media, if anything is.
+    /// Known light at matte surfaces and in media, if any.
     pub(super) known: Option<&'a dyn KnownLight>,
-    /// The samples that paths split into, if they may; and the ways in which sixteen go on.
+    /// The branches of paths, if these may split; and the continuations of sixteen.
     pub(super) branches: Option<Branches>,
     pub(super) ways: Vec<Way>,
-    /// What paths of a group share, if they do.
+    /// State of path sharing, if paths share.
     pub(super) sharing: Option<PathSharing>,
-    /// What samples find for themselves, and then what they find for sharing.
+    /// Radiances of samples, and then the radiances that they share.
     pub(super) found: Vec<Rgb>,
     pub(super) reflectances: Reflectances,
     /// Paths about to follow their rays, and those that go on.
     pub(super) paths: [PathQueue; 2],
     pub(super) shadows: ShadowQueue,
     pub(super) samplers: Option<SamplerColumns>,
-    /// What each path hits first.
+    /// The primitive that each path hits first.
     pub(super) primitives: Vec<u32>,
     /// All of these hits, in scenes where the primitive does not tell the rest.
     pub(super) hits: Vec<Hit>,
@@ -66,11 +66,11 @@ pub(super) struct WavefrontWorker<'a> {
     pub(super) masks: Option<Masks>,
     pub(super) media: Option<Media<'a>>,
     pub(super) flights: Option<Flights<'a>>,
-    /// What arrives along shadow rays through media, and at whose sample.
+    /// Samples of shadow rays through media, and the light that arrives.
     pub(super) arriving: Vec<(u32, Rgb)>,
     /// By sample, in scenes that need wavelengths.
     pub(super) waves: Vec<PathWaves>,
-    /// What is drawn of each of few lights.
+    /// Samples of each of few lights.
     pub(super) each: Vec<LightBlock>,
     /// The densities with which surfaces scatter into directions to each of few lights.
     pub(super) each_pdf: Vec<[f64; LANES]>,
@@ -93,7 +93,7 @@ pub(super) struct Block<'a> {
 
 /// Sixteen paths in scenes with media.
 pub(super) struct MediaBlock {
-    /// The media in which they come, behind the surface, and in which their shadow rays start.
+    /// Media before and behind the surface, and at the start of their shadow rays.
     pub here: [u32; LANES],
     pub through: [u32; LANES],
     pub of_shadows: [u32; LANES],
@@ -115,7 +115,7 @@ impl MediaBlock {
 }
 
 impl Block<'_> {
-    /// Takes what is known of sixteen paths from their queue.
+    /// Gathers sixteen paths from their queue.
     pub(super) fn gather(&mut self, queue: &PathQueue, extra: Extra) {
         let (which, position) = (&self.surfaces.index, &self.surfaces.position);
         if extra.time {
@@ -144,14 +144,14 @@ impl Block<'_> {
         }
     }
 
-    /// What the path of a lane finds from here on is shared. Roulette keeps the throughput that is lost.
+    /// The path of a lane shares its radiance from here on. Roulette keeps the throughput that is lost.
     pub(super) fn share(&mut self, lane: usize, samples: u32) {
         self.bsdf.scale[lane] *= self.throughput.get(lane).max_element();
         self.throughput.set(lane, Vec3::ONE);
         self.sample[lane] += samples;
     }
 
-    /// Queues shadow rays from the lanes in a mask to the lights drawn there, and what they bring.
+    /// Queues shadow rays from the lanes in a mask to their light samples.
     #[inline]
     pub(super) fn queue_shadows(
         &self,
@@ -246,7 +246,7 @@ impl<'a> WavefrontWorker<'a> {
         }
     }
 
-    /// Make room for what so many paths hit.
+    /// Make room for the hits of so many paths.
     fn make_room(&mut self, most: usize) {
         if self.primitives.len() < most + LANES {
             self.primitives.resize(most + LANES, 0);
@@ -302,7 +302,7 @@ impl<'a> WavefrontWorker<'a> {
         }
     }
 
-    /// Stage: paths are told apart by what they meet.
+    /// Stage: sorts paths by the BSDFs at their hits.
     fn classify(&mut self) {
         let count = self.paths[0].rays.len;
         let (first, rest) = self.met.split_at_mut(1);
@@ -341,7 +341,7 @@ impl<'a> WavefrontWorker<'a> {
         }
     }
 
-    /// Stage: what is known of sixteen surfaces, and what they emit.
+    /// Stage: gathers sixteen surfaces, and adds their emission.
     fn meet(&mut self, which: &[u32], radiance: &mut [Rgb]) {
         let (queue, block) = (&self.paths[0], &mut *self.block);
         let geometry = self.scene.geometry();
@@ -352,7 +352,7 @@ impl<'a> WavefrontWorker<'a> {
         emission::add_emitted(self.scene, queue, &block.surfaces, &block.bsdf.width, radiance);
     }
 
-    /// Stage: in which media sixteen paths are.
+    /// Stage: gathers the media of sixteen paths.
     pub(super) fn gather_media(&mut self, samples: u32) {
         let Some(media) = &self.media else { return };
         let Block { sample, media: block, .. } = &mut *self.block;
@@ -362,13 +362,13 @@ impl<'a> WavefrontWorker<'a> {
         }
     }
 
-    /// Whether roulette is played after so many bounces. The density with which a path comes to the second point that
-    /// it shares must be known.
+    /// Return whether roulette is played after so many bounces. The density with which a path comes to the second point
+    /// that it shares must be known.
     pub(super) fn plays(&self, bounce: u32) -> bool {
         bounce + 1 >= self.settings.roulette_depth && (bounce > 0 || self.sharing.is_none())
     }
 
-    /// Stage: shadow rays are followed, and what arrives along those that nothing blocks is added.
+    /// Stage: traces shadow rays, and adds the light of those that nothing blocks.
     fn follow_shadows(&mut self, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
         self.meet_masked_lamps();
         if self.media.is_some() && self.settings.shadows {
@@ -431,7 +431,7 @@ impl<'a> WavefrontWorker<'a> {
         self.found = found;
     }
 
-    /// Takes all paths to what they meet next, and on from there.
+    /// Takes all paths to their next hits, and scatters them there.
     fn bounce(&mut self, numbers: &mut SamplerLanes, bounce: u32, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
         self.make_room(self.paths[0].rays.len);
         self.shadows.rays.len = 0;
@@ -480,7 +480,7 @@ impl<'a> WavefrontWorker<'a> {
     }
 }
 
-/// The kind of the BSDF of a primitive. Matte is what reflects one color everywhere by its own normal.
+/// The kind of the BSDF of a primitive. A matte surface reflects one color everywhere, by its own normal.
 fn kind_of(scene: &Scene, primitive: u32) -> usize {
     let (plan, geometry) = (scene.plan(), scene.geometry());
     let shape = geometry.locate(primitive).0;
@@ -489,7 +489,7 @@ fn kind_of(scene: &Scene, primitive: u32) -> usize {
     if kind == Plan::DIFFUSE && !is_matte() { Plan::MIXED } else { kind }
 }
 
-/// The place of a sample in its batch. What is found for sharing has numbers of its own, after those of all samples.
+/// The place of a sample in its batch. Shared radiance has numbers of its own, after those of all samples.
 #[inline(always)]
 pub(super) fn own(sample: u32, samples: u32) -> u32 {
     sample.min(sample.wrapping_sub(samples)).min(sample.wrapping_sub(samples.wrapping_mul(2)))
