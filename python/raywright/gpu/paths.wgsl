@@ -127,7 +127,7 @@ fn offset(u: f32) -> f32 {
 }
 
 @compute @workgroup_size(64)
-fn generate(@builtin(global_invocation_id) id: vec3<u32>) {
+fn start(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = id.x;
     if i >= job.pixels * job.samples {
         return;
@@ -148,7 +148,7 @@ fn generate(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 @compute @workgroup_size(64)
-fn trace(@builtin(global_invocation_id) id: vec3<u32>) {
+fn find_closest(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = taken(job.now, id.x);
     if i == NO {
         return;
@@ -201,7 +201,7 @@ fn plan_first() {
 }
 
 @compute @workgroup_size(64)
-fn leave_scene(@builtin(global_invocation_id) id: vec3<u32>) {
+fn add_outside(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = taken(SKY, id.x);
     if i == NO || SKY_KIND == 0u {
         return;
@@ -222,7 +222,7 @@ fn kept(held: u32) -> f32 {
 }
 
 // For a kind known to the compiler, or for any with NO.
-fn shade(i: u32, kind: u32) {
+fn leave(i: u32, kind: u32) {
     var path = paths[i];
     let at = surface_at(path.face, path.origin, path.direction);
     var looks = material_at(at);
@@ -294,39 +294,39 @@ fn shade(i: u32, kind: u32) {
 }
 
 @compute @workgroup_size(64)
-fn shade_matt(@builtin(global_invocation_id) id: vec3<u32>) {
+fn leave_matte(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = taken(MATT, id.x);
     if i != NO {
-        shade(i, DIFFUSE);
+        leave(i, DIFFUSE);
     }
 }
 
 @compute @workgroup_size(64)
-fn shade_others(@builtin(global_invocation_id) id: vec3<u32>) {
+fn leave_any(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = taken(OTHERS, id.x);
     if i != NO {
-        shade(i, NO);
+        leave(i, NO);
     }
 }
 
 @compute @workgroup_size(64)
-fn shade_brushed(@builtin(global_invocation_id) id: vec3<u32>) {
+fn leave_brushed(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = taken(BRUSHED, id.x);
     if i != NO {
-        shade(i, ROUGH_METAL);
+        leave(i, ROUGH_METAL);
     }
 }
 
 @compute @workgroup_size(64)
-fn shade_frosted(@builtin(global_invocation_id) id: vec3<u32>) {
+fn leave_frosted(@builtin(global_invocation_id) id: vec3<u32>) {
     let i = taken(FROSTED, id.x);
     if i != NO {
-        shade(i, ROUGH_GLASS);
+        leave(i, ROUGH_GLASS);
     }
 }
 
 @compute @workgroup_size(64)
-fn bring(@builtin(global_invocation_id) id: vec3<u32>) {
+fn follow_shadows(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= atomicLoad(&counts[TO_LIGHT]) {
         return;
     }

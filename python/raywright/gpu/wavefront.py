@@ -51,11 +51,11 @@ _OWN = 8
 _TO_LIGHT = 7
 # By shading kernel: its list, and the kinds of materials it handles; the sky needs none.
 _SHADING: dict[str, tuple[int, set[int]]] = {
-    "leave_scene": (2, set()),
-    "shade_matt": (3, {0}),
-    "shade_others": (4, {1, 2, 3, 6}),
-    "shade_brushed": (5, {4}),
-    "shade_frosted": (6, {5}),
+    "add_outside": (2, set()),
+    "leave_matte": (3, {0}),
+    "leave_any": (4, {1, 2, 3, 6}),
+    "leave_brushed": (5, {4}),
+    "leave_frosted": (6, {5}),
 }
 _NO_LIMIT = 0xFFFFFFFF
 
@@ -158,13 +158,13 @@ class Wavefront:
         }
         self._asks = int(scene.lit["lights"]) > 0 or int(scene.lit["sky_kind"]) > 0
         entries = (
-            "generate",
+            "start",
             "plan_first",
-            "trace",
+            "find_closest",
             "plan_shading",
             *self._shading,
             "plan_rays",
-            "bring",
+            "follow_shadows",
             "gather",
         )
         self._pipelines = {entry: self._pipeline(entry) for entry in entries}
@@ -228,13 +228,13 @@ class Wavefront:
         )
         looks = scene[len(walk) :]
         own = {
-            "generate": [0, 2, 3, 4, *numbers],
+            "start": [0, 2, 3, 4, *numbers],
             "plan_first": [0, 3, 5],
-            "trace": [0, 2, 3, 4, *walk, *some],
+            "find_closest": [0, 2, 3, 4, *walk, *some],
             "plan_shading": [0, 3, 5],
-            "leave_scene": [0, 1, 2, 3, 4, *numbers],
+            "add_outside": [0, 1, 2, 3, 4, *numbers],
             "plan_rays": [0, 3, 5],
-            "bring": [0, 2, 3, 6, *walk],
+            "follow_shadows": [0, 2, 3, 6, *walk],
             "gather": [0, 2, 7],
         }
         return own.get(entry, [0, 1, 2, 3, 4, 6, *looks])
@@ -313,14 +313,14 @@ class Wavefront:
 
     def _rounds(self) -> Iterator[tuple[list[Step], bool]]:
         """Yield the remaining work until paths end, and whether they have certainly ended."""
-        steps: list[Step] = [("generate", 0, None), ("plan_first", 0, 1)]
+        steps: list[Step] = [("start", 0, None), ("plan_first", 0, 1)]
         bounce, last = 0, self._max_depth
         while True:
             for _ in range(_BOUNCES):
                 now = bounce % 2
-                steps += [("trace", now, None), ("plan_shading", now, 1)]
+                steps += [("find_closest", now, None), ("plan_shading", now, 1)]
                 steps += [(entry, now, None) for entry in self._shading]
-                steps += [("plan_rays", now, 1), *([("bring", now, None)] if self._asks else [])]
+                steps += [("plan_rays", now, 1), *([("follow_shadows", now, None)] if self._asks else [])]
                 bounce += 1
                 if last is not None and bounce > last:
                     yield steps, True
@@ -331,19 +331,19 @@ class Wavefront:
     def _submit(self, steps: list[Step], paths: int) -> None:
         """Set kernels to work, one after the other, on so many paths if they are to be generated."""
         encoder = self._device.create_command_encoder()
-        if steps[0][0] == "generate":
+        if steps[0][0] == "start":
             encoder.clear_buffer(self._counts)
             encoder.clear_buffer(self._plan)
         compute = encoder.begin_compute_pass()
         for entry, now, groups in steps:
             compute.set_pipeline(self._pipelines[entry])
             compute.set_bind_group(0, self._bound(entry, now))
-            if entry == "generate":
+            if entry == "start":
                 compute.dispatch_workgroups(-(-paths // _GROUP))
             elif groups is not None:
                 compute.dispatch_workgroups(groups)
             else:
-                which = now if entry == "trace" else self._shading.get(entry, _TO_LIGHT)
+                which = now if entry == "find_closest" else self._shading.get(entry, _TO_LIGHT)
                 compute.dispatch_workgroups_indirect(self._plan, 16 * which)
         compute.end()
         self._device.queue.submit([encoder.finish()])

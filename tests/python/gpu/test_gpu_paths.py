@@ -339,7 +339,7 @@ LEFT = {
     "the sampler is a Sobol": {"sampler": rw.rendering.Sobol(4)},
     "the filter is MitchellFilter": {"filter": rw.rendering.MitchellFilter()},
     "the camera is a Orthographic": {"camera": rw.Orthographic((0, 1, 6), (0, 0, 0), width=4, height=4)},
-    "the camera is too far": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
+    "the camera is far from all": {"camera": rw.Camera((0, 0, 1e5), (0, 0, 0), width=4, height=4)},
     "shape 0 is a Sphere": {"scene": rw.Scene(rw.Sphere())},
     "the scene has motion": {
         "scene": rw.Scene(rw.Instance([lamp()], [np.eye(4)], [np.diag([2.0, 2, 2, 1])]))
