@@ -1,6 +1,6 @@
 //! Gain from leaving out what a scene does not need: the same paths in a closed room, alone and with an object outside
-//! of it that no path meets, but that needs more. They run in turns, so that other load on the machine affects all alike.
-//! What they find is compared before timing.
+//! of it that no path meets, but that needs more. They run in turns, so that other load on the machine affects all
+//! alike. Their means are compared before timing.
 
 use raywright::accel::bvh::{self, Options};
 use raywright::integrators::{CameraSample, Integrator, Job, Path};
