@@ -30,7 +30,6 @@ mod ray_cast;
 mod resampling;
 mod roulette;
 mod shadows;
-mod skip_intersections;
 mod terminate_wavelengths;
 #[cfg(test)]
 mod tests;
@@ -52,6 +51,7 @@ pub use distributed::Distributed;
 pub use first_seen::FirstSeen;
 pub use guiding::{Guide, LocalGuide, is_matt};
 pub use light_traced::LightTraced;
+pub use media::optical_depth::optical_depths;
 pub use path::Path;
 pub use photon_map::{Kernel, PhotonMap, ProgressivePhotonMap};
 pub use photons::{Photon, Photons, photons};
@@ -59,7 +59,6 @@ pub use preview::{Pixel, Preview, PreviewLight};
 pub use radiosity::Radiosity;
 pub use ray_cast::RayCast;
 pub use transparent::Transparent;
-pub use volumes::optical_depths;
 pub use whitted::Whitted;
 
 use raywright_base::sampling::Sampler;

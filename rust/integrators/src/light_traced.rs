@@ -1,9 +1,8 @@
 //! Light tracing.
 
 use super::begin_paths::begin;
-use super::light_paths::{LightPaths, Limits};
+use super::light_paths::{Counting, LightPaths, Limits};
 use super::path_settings::PathSettings;
-use super::volumes::{Counting, MediaLightPaths};
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};
@@ -71,9 +70,6 @@ impl Session for LightTracing<'_> {
 
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
         let emitters = self.emitters.as_ref().filter(|_| self.limits.max_depth != Some(0))?;
-        if self.job.scene.plan().needs().media {
-            return Some(Box::new(MediaLightPaths::new(self.job, emitters, self.limits, Counting::Full)));
-        }
-        Some(Box::new(LightPaths::new(self.job, emitters, self.limits, None)))
+        Some(Box::new(LightPaths::new(self.job, emitters, self.limits, Counting::Full)))
     }
 }

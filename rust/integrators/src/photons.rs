@@ -1,8 +1,7 @@
 //! Photons as data for inspection.
 
-use super::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Visitor};
-use super::nesting::MediumStack;
-use super::volumes::{Drifting, MediaLightWalk, MediaVisitor, PathNumbers, Point, Vertex};
+use super::light_paths::{Arrived, Dimensions, LightPath, LightWalk, Limits, Point, Vertex, Visitor};
+use super::media::path_numbers::PathNumbers;
 use raywright_base::math::DVec3;
 use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
@@ -70,11 +69,7 @@ pub fn photons(
         if cancel.is_raised() {
             return seen.found;
         }
-        if scene.plan().needs().media {
-            MediaLightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
-        } else {
-            LightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
-        }
+        LightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
         seen.found.photons.sort_unstable_by_key(|photon| (photon.path, photon.bounces));
         seen.found
     };
@@ -143,26 +138,11 @@ impl<'a> PhotonRecorder<'a> {
 }
 
 impl<'a> Visitor<'a> for PhotonRecorder<'a> {
-    fn set_out(&mut self, path: &Flying, _: &EmissionSample) {
-        self.begin(path.number, path.flux);
-    }
-
-    fn meet(&mut self, arrived: &Arrived<'a>, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
-        let photon = self.photon(path.number, path.bounce - 1, [path.is_sharp, false], path.flux);
-        self.keep(photon, arrived);
-    }
-
-    fn leave(&mut self, path: &Flying) {
-        self.found.escaped += path.flux * self.share;
-    }
-}
-
-impl<'a> MediaVisitor<'a> for PhotonRecorder<'a> {
-    fn set_out(&mut self, path: &Drifting, _: &EmissionSample) {
+    fn set_out(&mut self, path: &LightPath, _: &EmissionSample) {
         self.begin(path.number, path.flux());
     }
 
-    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
+    fn meet(&mut self, at: &Vertex<'a>, path: &LightPath, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
         let last = [path.is_sharp, path.is_adrift];
         match &at.point {
             Point::Surface { arrived, .. } => {
@@ -181,7 +161,7 @@ impl<'a> MediaVisitor<'a> for PhotonRecorder<'a> {
         self.found.absorbed += flux * self.share;
     }
 
-    fn leave(&mut self, path: &Drifting) {
+    fn leave(&mut self, path: &LightPath) {
         self.found.escaped += path.flux() * self.share;
     }
 }

@@ -1,10 +1,7 @@
 //! Shadow rays.
 
-use super::boundary_queries::BoundaryQueries;
-use super::nesting::{Boundary, MediumStack};
 use raywright_base::math::{Hit, Ray, RayQueue};
 use raywright_optics::Rgb;
-use raywright_scene::materials::Interior;
 use raywright_scene::{Scene, opacity_at};
 
 /// Shadow rays of a batch with their contributions if unoccluded.
@@ -12,19 +9,21 @@ use raywright_scene::{Scene, opacity_at};
 pub(super) struct Shadows {
     rays: RayQueue,
     arriving: Vec<(u32, Rgb)>,
-    /// Media at the origin of each ray, in scenes with nested media.
-    media: Vec<MediumStack>,
     occluded: Vec<bool>,
     hits: Vec<Hit>,
-    boundaries: BoundaryQueries,
 }
 
 impl Shadows {
+    /// Return whether every hit occludes in a scene.
+    pub fn are_plain(scene: &Scene) -> bool {
+        let needs = scene.plan().needs();
+        !(needs.media || needs.nested || needs.masks)
+    }
+
     /// Remove all rays.
     pub fn clear(&mut self) {
         self.rays.clear();
         self.arriving.clear();
-        self.media.clear();
     }
 
     /// Append a ray.
@@ -39,19 +38,6 @@ impl Shadows {
         self.arriving.push((sample, arriving));
     }
 
-    /// Set the media of the next ray without them.
-    #[inline]
-    pub fn start_in(&mut self, media: MediumStack) {
-        self.media.push(media);
-    }
-
-    /// Add all contributions, without occlusion.
-    pub fn add_all(&mut self, radiance: &mut [Rgb]) {
-        for &(sample, arriving) in &self.arriving {
-            radiance[sample as usize] += arriving;
-        }
-    }
-
     /// Add the contributions of unoccluded rays, in scenes where every hit occludes.
     pub fn add_unblocked(&mut self, scene: &Scene, radiance: &mut [Rgb]) {
         self.occluded.resize(self.rays.len(), false);
@@ -63,9 +49,8 @@ impl Shadows {
         }
     }
 
-    /// Add the contributions of rays through masks, attenuated by their opacity, and through surfaces that nested
-    /// dielectrics remove.
-    pub fn add_through(&mut self, scene: &Scene, nested: bool, radiance: &mut [Rgb]) {
+    /// Add the contributions of rays through masks, attenuated by their opacity.
+    pub fn add_through(&mut self, scene: &Scene, radiance: &mut [Rgb]) {
         // Light is added in the order of the rays, regardless of their number of segments.
         let mut on_way: Vec<usize> = (0..self.rays.len()).collect();
         while !on_way.is_empty() {
@@ -73,23 +58,10 @@ impl Shadows {
             self.hits.clear();
             self.hits.resize(rays.len(), Hit::MISS);
             scene.intersect(&rays, &mut self.hits);
-            if nested {
-                self.boundaries.find::<Interior>(scene, rays.iter().copied(), &self.hits);
-            }
             let mut kept = 0;
             for i in 0..rays.len() {
                 let (ray, hit, which) = (&rays[i], &self.hits[i], on_way[i]);
                 if !hit.is_hit() {
-                    continue;
-                }
-                if nested
-                    && let Some((Boundary::None(media), beyond)) =
-                        self.boundaries.boundary(scene, i, (ray, hit), &self.media[which])
-                {
-                    self.rays.set_t_min(which, beyond);
-                    self.media[which] = media;
-                    on_way[kept] = which;
-                    kept += 1;
                     continue;
                 }
                 let opacity = opacity(scene, ray, hit);
@@ -102,7 +74,9 @@ impl Shadows {
             }
             on_way.truncate(kept);
         }
-        self.add_all(radiance);
+        for &(sample, arriving) in &self.arriving {
+            radiance[sample as usize] += arriving;
+        }
     }
 }
 

@@ -1,19 +1,20 @@
 //! Stored vertices of light paths.
 
-use crate::light_paths::{Arrived, Dimensions, Flying, LightEnd, Onward, Partials, Visitor};
-use crate::nesting::MediumStack;
-use raywright_base::sampling::Sampler;
-use raywright_optics::{Bsdf, Rgb};
+use crate::light_paths::{Dimensions, LightEnd, LightEnds, LightPath, Onward, Vertex, Visitor};
+use crate::media::path_numbers::PathNumbers;
+use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
 use raywright_scene::EmissionSample;
 
 /// A vertex of a light path.
 pub(super) struct LightVertex<'a> {
-    pub arrived: Arrived<'a>,
+    pub at: Vertex<'a>,
     /// Flux of the path, divided by the probability that the vertex is stored.
     pub flux: Rgb,
-    /// Remaining share for camera paths with a reflectance above 1 on the way ([`Bsdf::repeat_correction`]).
+    /// Remaining share for camera paths with a reflectance above 1 on the way
+    /// ([`raywright_optics::Bsdf::repeat_correction`]).
     pub again: Rgb,
-    /// Index of the vertex among the path's surfaces, from 1 on.
+    /// Index of the vertex on the path, from 1 on.
     pub bounce: u32,
     /// True if only the hero wavelength is left.
     pub single: bool,
@@ -26,7 +27,7 @@ pub(super) struct LightVertex<'a> {
 /// in a white room without a window, later vertices are stored with decreasing probability. Otherwise all connections
 /// of two such paths would take hours.
 pub(super) struct LightVertices<'a> {
-    partials: Partials<'a>,
+    ends: LightEnds<'a>,
     vertices: Vec<LightVertex<'a>>,
     /// Last vertex of each path.
     last: Vec<Option<u32>>,
@@ -36,13 +37,13 @@ impl<'a> LightVertices<'a> {
     /// Number of vertices of a path that are always stored; one in twenty of 4,000 is stored.
     const ALL: f64 = 32.0;
 
-    pub fn new(partials: Partials<'a>) -> Self {
-        Self { partials, vertices: Vec::new(), last: Vec::new() }
+    pub fn new(ends: LightEnds<'a>) -> Self {
+        Self { ends, vertices: Vec::new(), last: Vec::new() }
     }
 
     /// Clear, and set the number of paths and their merging disks, if vertices are merged.
     pub fn begin(&mut self, paths: usize, disks: impl Iterator<Item = f64>) {
-        self.partials.begin(disks);
+        self.ends.begin(disks);
         self.vertices.clear();
         self.last.clear();
         self.last.resize(paths, None);
@@ -56,39 +57,40 @@ impl<'a> LightVertices<'a> {
     }
 }
 
-/// A visit borrows its arrival, but the data in it lives as long as the scene.
+/// A visit borrows its vertex, but the data in it lives as long as the scene.
 impl<'a> Visitor<'a> for LightVertices<'a> {
-    fn set_out(&mut self, path: &Flying, light: &EmissionSample) {
-        self.partials.set_out(path, light);
+    fn set_out(&mut self, path: &LightPath, light: &EmissionSample) {
+        self.ends.set_out(path.number, light);
     }
 
     fn meet(
         &mut self,
-        arrived: &Arrived<'a>,
-        path: &Flying,
-        _: &MediumStack,
-        (sampler, dimensions): (&mut Sampler, Dimensions),
+        at: &Vertex<'a>,
+        path: &LightPath,
+        numbers: &mut PathNumbers,
+        dimensions: Dimensions,
+        _: &Cancel,
     ) {
-        self.partials.arrive(path, arrived);
+        self.ends.arrive(path.number, at);
         let odds = Self::ALL / f64::from(path.bounce);
-        if arrived.here.bsdf().is_delta() || odds < 1.0 && sampler.one(dimensions.keeping()) >= odds {
+        if at.is_single() || odds < 1.0 && numbers.one(dimensions.keeping()) >= odds {
             return;
         }
         let last = &mut self.last[path.number as usize];
         let vertex = LightVertex {
-            arrived: arrived.clone(),
-            flux: path.flux / odds.min(1.0),
+            at: at.clone(),
+            flux: path.flux() / odds.min(1.0),
             again: path.again,
             bounce: path.bounce,
             single: path.single,
-            end: *self.partials.end(path),
+            end: *self.ends.end(path.number),
             before: *last,
         };
         *last = Some(self.vertices.len() as u32);
         self.vertices.push(vertex);
     }
 
-    fn go_on(&mut self, arrived: &Arrived<'a>, path: &Flying, next: &Onward) {
-        self.partials.go_on(path, arrived, next);
+    fn go_on(&mut self, at: &Vertex<'a>, path: &LightPath, next: &Onward) {
+        self.ends.go_on(path.number, at, next);
     }
 }

@@ -10,8 +10,7 @@ mod worker;
 
 pub use vertex_merging::Merge;
 
-use super::light_paths::{LightPaths, Limits, Partials, Weighing, emitters};
-use super::volumes::{BothEnds, Counting, MediaLightPaths};
+use super::light_paths::{Counting, LightPaths, Limits, emitters};
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};
@@ -73,11 +72,8 @@ impl Integrator for Bidirectional {
 
     fn objection(&self, scene: &Scene, adaptive: bool) -> Option<String> {
         // Emission of media is found by camera paths alone.
-        if adaptive || scene.not_drawn().is_some() {
-            return super::LightTraced::default().objection(scene, adaptive);
-        }
-        let is_merged = self.merge.is_some() && scene.plan().needs().media;
-        is_merged.then(|| "walks are not merged among media: use vertex_merging=False, or ProgressivePhotonMap".into())
+        let is_taken = !adaptive && scene.not_drawn().is_none();
+        if is_taken { None } else { super::LightTraced::default().objection(scene, adaptive) }
     }
 
     fn takes_media(&self) -> bool {
@@ -106,21 +102,23 @@ struct Bidirection<'a> {
 }
 
 impl Bidirection<'_> {
-    fn among_media(&self) -> bool {
-        self.job.scene.plan().needs().media
-    }
-
-    /// Return the one strategy to show, if it is not a merge; no strategy has no vertices.
-    fn way_alone(&self) -> Option<[u32; 2]> {
-        self.alone.map(|alone| if alone.merges { [0; 2] } else { alone.vertices })
+    /// Return the weighting of connections to the camera.
+    fn counting(&self) -> Counting<'_> {
+        match self.alone {
+            Some(PathStrategy { vertices: [light, 1], merges: false }) => Counting::Alone(light),
+            Some(_) => Counting::Nothing,
+            None => {
+                let paths = f64::from(self.job.camera.width()) * f64::from(self.job.camera.height());
+                let disk =
+                    |merging| Box::new(move |number| Merging::disk(merging, number)) as Box<dyn Fn(u32) -> f64 + Send>;
+                Counting::Beside { paths, disk: self.merging.as_ref().map(disk) }
+            }
+        }
     }
 }
 
 impl Session for Bidirection<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        if self.among_media() {
-            return Box::new(BothEnds::new(self.job, self.emitters.as_ref(), self.limits, self.way_alone()));
-        }
         Box::new(BidirectionalWorker::new(self))
     }
 
@@ -140,19 +138,6 @@ impl Session for Bidirection<'_> {
 
     fn light_worker(&self) -> Option<Box<dyn LightWorker + '_>> {
         let emitters = self.emitters.as_ref().filter(|_| self.limits.max_depth != Some(0))?;
-        let paths = f64::from(self.job.camera.width()) * f64::from(self.job.camera.height());
-        let alone = self.way_alone();
-        if self.among_media() {
-            let counting = match alone {
-                None => Counting::Beside(paths),
-                Some([light, 1]) => Counting::Alone(light),
-                Some(_) => Counting::Nothing,
-            };
-            return Some(Box::new(MediaLightPaths::new(self.job, emitters, self.limits, counting)));
-        }
-        let disk = |merging| Box::new(move |number| Merging::disk(merging, number)) as Box<dyn Fn(u32) -> f64 + Send>;
-        let disks = self.merging.as_ref().map(disk);
-        let weighing = Weighing { partials: Partials::new(emitters), disks, paths, alone };
-        Some(Box::new(LightPaths::new(self.job, emitters, self.limits, Some(weighing))))
+        Some(Box::new(LightPaths::new(self.job, emitters, self.limits, self.counting())))
     }
 }

@@ -1,11 +1,12 @@
 //! Vertex merging of camera paths with photons.
 
-use super::camera_paths::{EyePath, EyeVertex};
-use crate::light_paths::{Arrived, Dimensions, Flying, Limits, Onward, Partial, Partials, Visitor, of_merged};
-use crate::nesting::MediumStack;
+use super::camera_paths::EyePath;
+use crate::Job;
+use crate::light_paths::{
+    Arrived, Dimensions, LightEnds, LightPath, Limits, Onward, Partial, Vertex, Visitor, of_merged,
+};
+use crate::media::path_numbers::PathNumbers;
 use crate::photon_map::{HashedGrid, Kernel, MapSchedule, PhotonCount, Sending, Series, StoredPhoton, cover, flown};
-use crate::{Job, is_matt};
-use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
@@ -96,9 +97,9 @@ impl<'a> Merging<'a> {
             let share = 1.0 / f64::from(flight.paths);
             let disk = self.disk(flight.number);
             let keeping = |paths| {
-                let mut partials = Partials::new(emitters);
-                partials.begin(std::iter::repeat_n(disk, paths));
-                Keeping { share, partials, kept: Vec::new() }
+                let mut ends = LightEnds::new(emitters);
+                ends.begin(std::iter::repeat_n(disk, paths));
+                Keeping { share, ends, kept: Vec::new() }
             };
             let parts = flown(scene, emitters, camera, flight, (alone, cancel), keeping);
             let photons: Vec<_> = parts.into_iter().flat_map(|part| part.kept).collect();
@@ -117,11 +118,11 @@ impl<'a> Merging<'a> {
     pub fn found(
         &self,
         map: &MergeMap,
-        (at, path): (&EyeVertex, &EyePath),
+        (at, arrived, path): (&Vertex, &Arrived, &EyePath),
         bounces: Option<u32>,
         alone: Option<u32>,
     ) -> Rgb {
-        let here = &at.arrived.here;
+        let here = &arrived.here;
         let squared_radius = (map.places.radius() * self.scale).powi(2);
         let mut sum = Rgb::ZERO;
         map.places.within(here.position(), |number, squared| {
@@ -138,7 +139,7 @@ impl<'a> Merging<'a> {
             }
             let weight = match alone {
                 Some(_) => 1.0,
-                None => of_merged((light, back), (&path.partial, at.onward_pdf(towards)), path.disk),
+                None => of_merged((light, back), (&path.partial, at.light_back_pdf(towards)), path.disk),
             };
             sum += scattered
                 * photon.power(path.has_gamut_excess, path.single)
@@ -147,32 +148,32 @@ impl<'a> Merging<'a> {
         if sum.is_black() || !sum.is_radiance() {
             return Rgb::ZERO;
         }
-        sum / cover(self.job.scene, here, squared_radius, Kernel::Box, at.arrived.ray.time)
+        sum / cover(self.job.scene, here, squared_radius, Kernel::Box, arrived.ray.time)
     }
 }
 
 /// A visitor that stores indirect photons at matte surfaces.
 struct Keeping<'a> {
     share: f64,
-    partials: Partials<'a>,
+    ends: LightEnds<'a>,
     kept: Vec<(StoredPhoton, Partial)>,
 }
 
 impl<'a> Visitor<'a> for Keeping<'a> {
-    fn set_out(&mut self, path: &Flying, light: &EmissionSample) {
-        self.partials.set_out(path, light);
+    fn set_out(&mut self, path: &LightPath, light: &EmissionSample) {
+        self.ends.set_out(path.number, light);
     }
 
-    fn meet(&mut self, arrived: &Arrived<'a>, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
-        self.partials.arrive(path, arrived);
-        if path.bounce > 1 && is_matt(arrived.here.bsdf()) {
-            let power = (path.flux * self.share, path.single);
+    fn meet(&mut self, at: &Vertex<'a>, path: &LightPath, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
+        self.ends.arrive(path.number, at);
+        if let (Some(arrived), true) = (at.matte(), path.bounce > 1) {
+            let power = (path.flux() * self.share, path.single);
             let photon = StoredPhoton::arrived(arrived, power, path.bounce - 1, path.again);
-            self.kept.push((photon, self.partials.end(path).partial()));
+            self.kept.push((photon, self.ends.end(path.number).partial()));
         }
     }
 
-    fn go_on(&mut self, arrived: &Arrived<'a>, path: &Flying, next: &Onward) {
-        self.partials.go_on(path, arrived, next);
+    fn go_on(&mut self, at: &Vertex<'a>, path: &LightPath, next: &Onward) {
+        self.ends.go_on(path.number, at, next);
     }
 }

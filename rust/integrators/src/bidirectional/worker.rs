@@ -1,28 +1,32 @@
 //! Batches of camera paths, each with a light path.
 
-use super::camera_paths::{EyePath, EyeQueue, EyeVertex};
+use super::camera_paths::{EyePath, EyeQueue};
 use super::light_vertices::LightVertices;
 use super::vertex_merging::{MergeMap, Merging};
 use super::{Bidirection, PathStrategy};
 use crate::dimensions::Dimensions;
-use crate::light_paths::{Arrived, LightWalk, Limits, Partial, Partials, Times};
+use crate::light_paths::{Arrived, LightEnds, LightWalk, Limits, Partial, Point, Times, Vertex};
+use crate::media::current_medium::Filled;
+use crate::media::medium_traversal::{LeftDepth, MediumTraversal, RaySegmentState, Step, TraversalEnd};
+use crate::media::path_numbers::{FurtherNumbers, PathNumbers, depth};
+use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::roulette;
 use crate::shadows::Shadows;
-use crate::skip_intersections::{Met, Passing};
+use crate::terminate_wavelengths::Parting;
 use crate::widths::widened;
-use crate::{CameraSample, Job, Worker, is_matt};
+use crate::{CameraSample, Job, Worker};
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
+use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
-use raywright_optics::{Bsdf, Dispersive, Rgb};
 use raywright_scene::{Emitters, Interaction, LookupContext, SurfaceInteraction};
 use std::sync::Arc;
 
 /// Per-thread state.
 pub(super) struct BidirectionalWorker<'a> {
-    job: Job<'a>,
+    pub(super) job: Job<'a>,
     emitters: Option<&'a Emitters<'a>>,
     limits: Limits,
     pub(super) alone: Option<PathStrategy>,
@@ -30,14 +34,16 @@ pub(super) struct BidirectionalWorker<'a> {
     paths: f64,
     /// True if samples are spread over time.
     moves: bool,
-    /// True if materials need ray widths.
+    /// True if materials need ray widths; and true if there are media.
     widths: bool,
+    has_media: bool,
     /// Wavelengths of samples; `None` for RGB.
     waves: Vec<Waves>,
-    pub(super) passing: Passing,
     now: EyeQueue,
     next: EyeQueue,
     hits: Vec<Hit>,
+    /// True if every hit of a shadow ray occludes; then these are traced together.
+    pub(super) is_plain: bool,
     pub(super) shadows: Shadows,
     /// Light paths, if any light can be sampled.
     light: Option<(LightWalk<'a>, LightVertices<'a>)>,
@@ -45,6 +51,8 @@ pub(super) struct BidirectionalWorker<'a> {
     merging: Option<&'a Merging<'a>>,
     maps: Vec<(u32, Arc<MergeMap>)>,
     samplers: Vec<Sampler>,
+    /// Further random numbers of each sample.
+    further: Vec<FurtherNumbers>,
 }
 
 impl<'a> BidirectionalWorker<'a> {
@@ -54,11 +62,11 @@ impl<'a> BidirectionalWorker<'a> {
     pub fn new(shared: &'a Bidirection<'a>) -> Self {
         let (job, limits, emitters) = (shared.job, shared.limits, shared.emitters.as_ref());
         let (scene, camera, needs) = (job.scene, job.camera, job.scene.plan().needs());
-        // A connection of two surfaces counts as a bounce, too.
+        // A connection counts as a scattering event, too.
         let within = Limits { max_depth: limits.max_depth.map(|depth| depth.saturating_sub(1)), ..limits };
         let light = |emitters: &'a Emitters<'a>| {
             let walk = LightWalk::new(scene, emitters, within, Some(camera));
-            (walk, LightVertices::new(Partials::new(emitters)))
+            (walk, LightVertices::new(LightEnds::new(emitters)))
         };
         Self {
             job,
@@ -68,16 +76,18 @@ impl<'a> BidirectionalWorker<'a> {
             paths: f64::from(camera.width()) * f64::from(camera.height()),
             moves: scene.geometry().moves() || camera.uses_time(),
             widths: needs.points.width,
+            has_media: needs.media,
             waves: Vec::new(),
-            passing: Passing::new(needs.masks, needs.nested),
             now: EyeQueue::default(),
             next: EyeQueue::default(),
             hits: Vec::new(),
+            is_plain: Shadows::are_plain(scene),
             shadows: Shadows::default(),
             light: emitters.filter(|_| limits.max_depth.is_none_or(|depth| depth > 1)).map(light),
             merging: shared.merging.as_ref(),
             maps: Vec::new(),
             samplers: Vec::new(),
+            further: Vec::new(),
         }
     }
 
@@ -96,15 +106,12 @@ impl<'a> BidirectionalWorker<'a> {
         }
         self.begin_merging(samples);
         self.start(samples);
-        while !self.now.rays.is_empty() && !cancel.is_raised() {
-            self.hits.resize(self.now.rays.len(), Hit::MISS);
+        while !self.now.paths.is_empty() && !cancel.is_raised() {
+            self.hits.clear();
+            self.hits.resize(self.now.paths.len(), Hit::MISS);
             self.job.scene.intersect_queue(&mut self.now.rays, &mut self.hits);
-            self.bounce(samples, light.as_ref().map(|(_, vertices)| vertices), radiance);
-            if self.passing.is_needed() {
-                self.shadows.add_through(self.job.scene, self.passing.is_nested(), radiance);
-            } else {
-                self.shadows.add_unblocked(self.job.scene, radiance);
-            }
+            self.step(samples, light.as_ref().map(|(_, vertices)| vertices), cancel, radiance);
+            self.shadows.add_unblocked(self.job.scene, radiance);
             self.shadows.clear();
         }
         self.light = light;
@@ -137,8 +144,8 @@ impl<'a> BidirectionalWorker<'a> {
     }
 
     /// Return the light merged at a camera vertex.
-    fn merge(&self, at: &EyeVertex<'a>, path: &EyePath, number: u32, most: Option<u32>) -> Rgb {
-        let Some(merging) = self.merging.filter(|_| is_matt(at.arrived.here.bsdf())) else { return Rgb::ZERO };
+    fn merge(&self, at: &Vertex, path: &EyePath, number: u32, most: Option<u32>) -> Rgb {
+        let (Some(merging), Some(arrived)) = (self.merging, at.matte()) else { return Rgb::ZERO };
         let Some((_, map)) = self.maps.iter().find(|(other, _)| *other == number) else { return Rgb::ZERO };
         let alone = match self.alone {
             None => None,
@@ -150,139 +157,189 @@ impl<'a> BidirectionalWorker<'a> {
             }
             Some(_) => return Rgb::ZERO,
         };
-        path.throughput * merging.found(map, (at, path), most, alone)
+        path.throughput() * merging.found(map, (at, arrived, path), most, alone)
     }
 
     /// Queue the camera rays.
-    fn start(&mut self, samples: &[CameraSample]) {
-        self.now.clear();
-        for (number, sample) in (0u32..).zip(samples) {
+    fn start(&mut self, samples: &mut [CameraSample]) {
+        self.next.clear();
+        self.further.clear();
+        let mut media = Vec::new();
+        let needs = self.job.scene.plan().needs();
+        if needs.media || needs.nested {
+            let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
+            MediumStack::<Filled>::at(self.job.scene, &rays, &mut media);
+        } else {
+            media.resize(samples.len(), MediumStack::NONE);
+        }
+        for ((number, sample), media) in (0u32..).zip(samples).zip(media) {
+            let mut further = FurtherNumbers::new(sample.sampler.apart());
+            let waves = self.waves.get(number as usize).copied();
+            // The choice must be independent of the wavelengths' own: dispersion keeps the first.
+            let hero = match waves {
+                _ if !self.has_media => 0,
+                Some(_) => further.hero(),
+                None => ((sample.sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2),
+            };
+            self.further.push(further);
             let path = EyePath {
                 sample: number,
-                throughput: Rgb::ONE,
+                going: RaySegmentState { ray: sample.ray, weights: Weights::START, media },
+                left: LeftDepth { hero, way: f64::INFINITY, start: 0.0 },
                 scale: 1.0,
                 bounce: 0,
-                media: MediumStack::NONE,
-                chance: -1.0,
                 footprint: self.job.footprint,
                 has_gamut_excess: false,
                 partial: Partial::of_camera(self.paths, 0.0),
                 disk: self.merging.map_or(0.0, |merging| merging.disk(sample.sampler.number())),
                 normal: DVec3::ZERO,
-                waves: self.waves.get(number as usize).copied(),
+                waves,
                 single: false,
             };
-            self.now.push(&sample.ray, path);
-        }
-        if self.passing.is_nested() {
-            let mut media = Vec::new();
-            MediumStack::at(self.job.scene, self.now.rays.rows(), &mut media);
-            for (path, media) in self.now.paths.iter_mut().zip(media) {
-                path.media = media;
-            }
-        }
-    }
-
-    /// Advance all paths by one ray.
-    fn bounce(&mut self, samples: &mut [CameraSample], light: Option<&LightVertices<'a>>, radiance: &mut [Rgb]) {
-        self.next.clear();
-        self.passing.begin(self.job.scene, &self.now.rays, &self.hits);
-        for i in 0..self.now.rays.len() {
-            let (ray, hit, mut path) = (self.now.rays.get(i), self.hits[i], self.now.paths[i]);
-            if !hit.is_hit() {
-                radiance[path.sample as usize] += path.throughput * self.outside(&ray, &path);
-                continue;
-            }
-            let sampler = &mut samples[path.sample as usize].sampler;
-            let number = || sampler.one(Dimensions::of(path.bounce, 0).mask());
-            match self.passing.meet(self.job.scene, i, (&ray, &hit), &path.media, &mut path.chance, number) {
-                Met::Nothing(ray, media) => self.next.push(&ray, EyePath { media, ..path }),
-                Met::Surface { hit, outside, through } => {
-                    let (arrived, parting) = match path.waves {
-                        None => (Arrived::new(self.job.scene, ray, hit, outside), None),
-                        Some(waves) => {
-                            let around = match self.passing.is_nested() {
-                                true => [&path.media, &through].map(MediumStack::dispersion),
-                                false => [Dispersive::NONE; 2],
-                            };
-                            Arrived::by_waves(self.job.scene, (ray, hit), (outside, around), waves)
-                        }
-                    };
-                    let width = if self.widths { path.footprint.at(hit.t).width } else { 0.0 };
-                    let wide = (width > 0.0).then(|| {
-                        let surface = *arrived.here.surface();
-                        let gaze = LookupContext { width, waves: path.waves };
-                        SurfaceInteraction::new(self.job.scene, &ray, &hit, surface, gaze, arrived.outside)
-                    });
-                    let at = EyeVertex { arrived, wide, through, parting };
-                    self.arrive(&at, path, width, sampler, light, &mut radiance[path.sample as usize]);
-                }
-            }
+            self.take_off(path, &mut sample.sampler);
         }
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
-    /// Advance a path from a surface to its next ray, given the ray's width there.
+    /// Queue a path that starts along its ray.
+    fn take_off(&mut self, mut path: EyePath, sampler: &mut Sampler) {
+        let way =
+            if self.has_media { depth(sampler.one(Dimensions::of(path.bounce, 0).mask())) } else { f64::INFINITY };
+        path.left = LeftDepth { way, start: path.going.ray.t_min, ..path.left };
+        self.next.push(&MediumTraversal::alone(self.job.scene, path.waves_with(false)), path);
+    }
+
+    /// Take all paths to their hits, and those that scatter there to their next rays.
+    fn step(
+        &mut self,
+        samples: &mut [CameraSample],
+        light: Option<&LightVertices<'a>>,
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
+        self.next.clear();
+        let mut further = std::mem::take(&mut self.further);
+        for i in 0..self.now.paths.len() {
+            let (hit, mut path) = (self.hits[i], self.now.paths[i]);
+            let course = MediumTraversal::alone(self.job.scene, path.waves_with(false));
+            let sample = path.sample as usize;
+            let (sampler, light_here) = (&mut samples[sample].sampler, &mut radiance[sample]);
+            let number = sampler.number();
+            let mut numbers = PathNumbers::new(sampler, &mut further[sample]);
+            numbers.ray = Dimensions::of(path.bounce, 0);
+            let (going, left) = (&mut path.going, &mut path.left);
+            let end = match course.step(going, left, &hit, &mut numbers, cancel, light_here, None) {
+                Step::Passes => {
+                    self.next.push(&course, path);
+                    continue;
+                }
+                Step::Absorbed => continue,
+                Step::Ends(end) => end,
+            };
+            let Some((at, parting)) = self.vertex(end, &mut path, light_here) else { continue };
+            let numbers = (&mut numbers, cancel);
+            if self.arrive(&at, &mut path, parting, number, numbers, light, light_here) {
+                self.take_off(path, &mut samples[sample].sampler);
+            }
+        }
+        self.further = further;
+        std::mem::swap(&mut self.now, &mut self.next);
+    }
+
+    /// Return the vertex at the end of a path's ray, with the wavelength dependence that splits the path, after adding
+    /// emission there.
+    fn vertex(&self, end: TraversalEnd, path: &mut EyePath, light: &mut Rgb) -> Option<(Vertex<'a>, Option<Parting>)> {
+        let RaySegmentState { ray, media, .. } = path.going;
+        let scene = self.job.scene;
+        match end {
+            TraversalEnd::Outside => {
+                *light += path.throughput() * self.outside(path);
+                None
+            }
+            TraversalEnd::Medium { here, collision, .. } => {
+                path.footprint = path.footprint.at(collision.t);
+                Some((Vertex::of_medium(scene, here, &collision, (ray, media), path.waves.as_ref()), None))
+            }
+            TraversalEnd::Surface { hit, outside, through } => {
+                let (arrived, parting) = match path.waves {
+                    None => (Arrived::new(scene, ray, hit, outside), None),
+                    Some(waves) => {
+                        let around = [&media, &through].map(MediumStack::dispersion);
+                        Arrived::by_waves(scene, (ray, hit), (outside, around), waves)
+                    }
+                };
+                path.footprint = path.footprint.at(hit.t);
+                let width = if self.widths { path.footprint.width } else { 0.0 };
+                let gaze = LookupContext { width, waves: path.waves };
+                let seen = (width > 0.0).then(|| {
+                    let surface = *arrived.here.surface();
+                    SurfaceInteraction::new(scene, &ray, &hit, surface, gaze, arrived.outside)
+                });
+                *light += path.throughput() * self.emitted(&arrived, path, gaze);
+                if parting.is_some_and(|parting| !parting.waits(arrived.here.bsdf())) {
+                    path.end_all_but_first();
+                }
+                Some((Vertex::of_surface(arrived, through, media).seen(seen), parting))
+            }
+        }
+    }
+
+    /// Connect a path from a vertex, scatter it, and return whether it continues.
+    #[allow(clippy::too_many_arguments)]
     fn arrive(
         &mut self,
-        at: &EyeVertex<'a>,
-        mut path: EyePath,
-        width: f64,
-        sampler: &mut Sampler,
+        at: &Vertex<'a>,
+        path: &mut EyePath,
+        parting: Option<Parting>,
+        number: u32,
+        (numbers, cancel): (&mut PathNumbers, &Cancel),
         light: Option<&LightVertices<'a>>,
         radiance: &mut Rgb,
-    ) {
-        *radiance += path.throughput * self.emitted(at, &path, width);
+    ) -> bool {
         if self.limits.max_depth.is_some_and(|most| path.bounce >= most) {
-            return;
+            return false;
         }
-        let here = at.here();
-        if at.parting.is_some_and(|parting| !parting.waits(here.bsdf())) {
-            path.end_all_but_hero();
-        }
-        let cosine = at.arrived.cosine(at.arrived.back());
+        let cosine = at.cosine(at.back());
         path.partial = if path.bounce == 0 {
-            Partial::of_camera(self.paths, self.seen(at, sampler) * cosine)
+            Partial::of_camera(self.paths, self.seen(at, numbers) * cosine)
         } else {
-            path.partial.arrived(at.arrived.hit.t, cosine)
+            path.partial.arrived(at.t, cosine)
         };
-        if path.disk > 0.0 && is_matt(at.arrived.here.bsdf()) {
+        if path.disk > 0.0 && at.matte().is_some() {
             path.partial = path.partial.merging(path.disk);
         }
-        let again = here.bsdf().repeat_correction();
+        let again = at.repeat_correction();
         if again != Rgb::ONE {
             if path.has_gamut_excess {
-                path.throughput *= again;
+                path.going.weights.carried *= again;
             }
             path.has_gamut_excess = true;
         }
-        let dimensions = Dimensions::of(path.bounce, 0);
-        if let Some(emitters) = self.emitters.filter(|_| !here.bsdf().is_delta()) {
-            let choice = dimensions.light_choice(0);
-            self.ask(emitters, at, &path, (sampler.one(choice), sampler.two(choice + 1)));
+        if let Some(emitters) = self.emitters.filter(|_| !at.is_single()) {
+            self.ask(emitters, at, path, (numbers, cancel), radiance);
             let most = self.limits.max_depth.map(|depth| depth - path.bounce - 1);
             for vertex in light.into_iter().flat_map(|light| light.of(path.sample)) {
                 if most.is_none_or(|most| vertex.bounce <= most) {
-                    self.connect(emitters, at, &path, vertex);
+                    self.connect(emitters, at, path, vertex, (numbers, cancel), radiance);
                 }
             }
-            *radiance += self.merge(at, &path, sampler.number(), most);
+            *radiance += self.merge(at, path, number, most);
         }
-        self.go_on(at, path, width, sampler, dimensions);
+        self.go_on(at, path, parting, numbers)
     }
 
-    /// Return the density of camera rays at the first hit, per area perpendicular to them, in pixels.
-    fn seen(&self, at: &EyeVertex, sampler: &mut Sampler) -> f64 {
+    /// Return the density of camera rays at the first vertex, per area perpendicular to them, in pixels.
+    fn seen(&self, at: &Vertex, numbers: &mut PathNumbers) -> f64 {
         let camera = self.job.camera;
-        let lens = if camera.uses_lens() { sampler.two(1) } else { [0.5; 2] };
-        let time = if self.moves { sampler.one(3) } else { 0.0 };
-        camera.connect(at.arrived.here.position(), lens, time).map_or(0.0, |seen| seen.density)
+        let lens = if camera.uses_lens() { numbers.two(1) } else { [0.5; 2] };
+        let time = if self.moves { numbers.one(3) } else { 0.0 };
+        camera.connect(at.position(), lens, time).map_or(0.0, |seen| seen.density)
     }
 
     /// Return the weighted light of infinite lights that a path hits.
-    fn outside(&self, ray: &Ray, path: &EyePath) -> Rgb {
-        let lights = self.job.scene.lights();
-        let arriving = lights.infinite_radiance_at(ray.direction, path.waves.as_ref());
+    fn outside(&self, path: &EyePath) -> Rgb {
+        let (lights, direction) = (self.job.scene.lights(), path.going.ray.direction);
+        let arriving = lights.infinite_radiance_at(direction, path.waves.as_ref());
         if arriving.is_black() || path.bounce == 0 && self.alone.is_none() {
             return arriving;
         }
@@ -290,22 +347,22 @@ impl<'a> BidirectionalWorker<'a> {
             * match (self.alone, self.emitters) {
                 (Some(_), _) => self.full(0, path.bounce + 2),
                 (None, Some(emitters)) => {
-                    let asked = lights.infinite_pdf(&path.receiver(ray), ray.direction);
-                    path.partial.of_found(asked, &emitters.of_environment(ray.direction))
+                    let asked = lights.infinite_pdf(&path.receiver(), direction);
+                    path.partial.of_found(asked, &emitters.of_environment(direction))
                 }
                 (None, None) => 1.0,
             }
     }
 
     /// Return the weighted emission of a surface that a path hits.
-    fn emitted(&self, at: &EyeVertex, path: &EyePath, width: f64) -> Rgb {
-        let (scene, Arrived { ray, hit, .. }) = (self.job.scene, &at.arrived);
-        let (geometry, surface) = (scene.geometry(), at.arrived.here.surface());
+    fn emitted(&self, arrived: &Arrived, path: &EyePath, gaze: LookupContext) -> Rgb {
+        let (scene, Arrived { ray, hit, .. }) = (self.job.scene, arrived);
+        let (geometry, surface) = (scene.geometry(), arrived.here.surface());
         let emission = scene.emission_at(surface);
         if emission.is_dark() {
             return Rgb::ZERO;
         }
-        let sent = emission.sent(geometry, ray, hit, surface, || LookupContext { width, waves: path.waves });
+        let sent = emission.sent(geometry, ray, hit, surface, || gaze);
         if sent.is_black() || path.bounce == 0 && self.alone.is_none() {
             return sent;
         }
@@ -313,49 +370,67 @@ impl<'a> BidirectionalWorker<'a> {
             (Some(_), _) => self.full(0, path.bounce + 2),
             (None, Some(departure)) => {
                 let cosine = -ray.direction.dot(surface.normal);
-                let asked = scene.lights().surface_pdf(geometry, &path.receiver(ray), ray, hit, cosine);
+                let asked = scene.lights().surface_pdf(geometry, &path.receiver(), ray, hit, cosine);
                 path.partial.of_found(asked, &departure)
             }
             (None, None) => 1.0,
         }
     }
 
-    /// Continue a path from a surface, unless it ends there.
-    fn go_on(&mut self, at: &EyeVertex, mut path: EyePath, width: f64, sampler: &mut Sampler, dimensions: Dimensions) {
-        let here = at.here();
-        let u = sampler.two(dimensions.direction());
-        let Some(next) = here.sample(&mut || sampler.one(dimensions.scattering_choice()), u) else { return };
-        path.throughput *= next.weight;
-        path.part(at.parting.as_ref(), here.wo(), &next);
+    /// Scatter a path and return whether it continues.
+    fn go_on(&self, at: &Vertex, path: &mut EyePath, parting: Option<Parting>, numbers: &mut PathNumbers) -> bool {
+        let ray = numbers.ray;
+        let (u, choice) = (numbers.two(ray.direction()), ray.scattering_choice());
+        let next = match &at.point {
+            Point::Surface { arrived, wide, .. } => {
+                let here = wide.as_deref().unwrap_or(&arrived.here);
+                here.sample(&mut || numbers.one(choice), u)
+            }
+            Point::Medium { here, .. } => here.sample(&mut || 0.0, u),
+        };
+        let Some(next) = next else { return false };
+        path.going.weights.carried *= next.weight;
+        match (&at.point, parting) {
+            (_, Some(_)) if next.is_through => path.end_all_but_first(),
+            (Point::Surface { arrived, wide, .. }, Some(parting)) if !path.single => {
+                let here = wide.as_deref().unwrap_or(&arrived.here);
+                path.going.weights.carried *= parting.mirrored(here.wo());
+            }
+            _ => {}
+        }
         path.scale *= next.eta * next.eta;
         path.bounce += 1;
+        let throughput = path.throughput();
         if path.bounce >= self.limits.roulette_depth.min(roulette::AT_LATEST) {
-            let survival = roulette::survival(path.throughput, path.scale);
-            let survives = sampler.one(dimensions.roulette()) < survival;
-            if !survives {
-                return;
+            // Light leaves a finite medium eventually.
+            let may_never_end = matches!(at.point, Point::Surface { .. }) || self.job.scene.surrounding().is_some();
+            let survival = if may_never_end {
+                roulette::survival(throughput, path.scale)
+            } else {
+                (throughput.max() * path.scale).sqrt().min(1.0)
+            };
+            if numbers.one(ray.roulette()) >= survival {
+                return false;
             }
-            path.throughput /= survival;
+            path.going.weights.carried /= survival;
         }
-        if path.throughput.is_black() || !path.throughput.is_finite() {
-            return;
+        if throughput.is_black() || !throughput.is_finite() {
+            return false;
         }
-        let cosine = at.arrived.cosine(next.wi);
+        let cosine = at.cosine(next.wi);
         path.partial = if next.is_delta() {
             path.partial.scattered_singly(cosine)
         } else {
-            let forward = if at.wide.is_some() { at.arrived.here.evaluate(next.wi).1 } else { next.pdf };
-            path.partial.scattered(cosine, forward, at.onward_pdf(next.wi))
+            let forward = if at.is_wide() { at.evaluate(next.wi).1 } else { next.pdf };
+            path.partial.scattered(cosine, forward, at.light_back_pdf(next.wi))
         };
-        path.normal = at.arrived.here.light_context().normal;
         if self.widths {
-            path.footprint = widened(&path.footprint, width, here.curvature(), &next);
+            path.footprint = widened(&path.footprint, path.footprint.width, at.curvature(), &next);
         }
-        if next.is_through {
-            path.media = at.through;
-        }
-        path.chance = -1.0;
-        self.next.push(&at.leaving(here.ray_origin().ray(next.wi), Ray::NO_TRIANGLE), path);
+        path.normal = at.receiver().normal;
+        path.going.media = at.media_after(next.is_through);
+        path.going.ray = at.leaving(at.origin().ray(next.wi), Ray::NO_TRIANGLE);
+        true
     }
 }
 

@@ -5,6 +5,8 @@ pub(super) mod current_medium;
 pub(super) mod distance_sampling;
 pub(super) mod equiangular;
 pub(super) mod hit_classification;
+pub(super) mod medium_traversal;
+pub(super) mod optical_depth;
 pub(super) mod path_numbers;
 pub(super) mod path_reuse;
 mod point_pairs;

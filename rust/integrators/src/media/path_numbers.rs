@@ -7,7 +7,7 @@ use raywright_base::sampling::Sampler;
 /// collisions along a ray, use a sequence of further numbers.
 pub(crate) struct PathNumbers<'s> {
     sampler: &'s mut Sampler,
-    pub more: FurtherNumbers,
+    pub more: &'s mut FurtherNumbers,
     /// Dimensions of the path's current ray.
     pub ray: Dimensions,
 }
@@ -48,15 +48,8 @@ impl FurtherNumbers {
 }
 
 impl<'s> PathNumbers<'s> {
-    /// Make the numbers of a sample.
-    pub fn new(sampler: &'s mut Sampler) -> Self {
-        let more = FurtherNumbers::new(sampler.paired());
-        Self { sampler, more, ray: Dimensions::of(0, 0) }
-    }
-
-    /// Make the numbers of a sample whose paired sequence is used by another path.
-    pub fn apart(sampler: &'s mut Sampler) -> Self {
-        let more = FurtherNumbers::new(sampler.apart());
+    /// Make the numbers of a sample, with a sequence of further ones.
+    pub fn new(sampler: &'s mut Sampler, more: &'s mut FurtherNumbers) -> Self {
         Self { sampler, more, ray: Dimensions::of(0, 0) }
     }
 

@@ -4,14 +4,11 @@ use super::map_cache::PhotonCount;
 use super::photon::StoredPhoton;
 use super::photon_lookup::Places;
 use super::volume_photon::{VolumeIndex, VolumePhoton};
-use crate::is_matt;
-use crate::light_paths::{Arrived, Dimensions, Flying, LightWalk, Limits, Times, Visitor};
-use crate::nesting::MediumStack;
-use crate::volumes::{Drifting, MediaLightWalk, MediaVisitor, PathNumbers, Point, Vertex};
+use crate::light_paths::{Dimensions, LightPath, LightWalk, Limits, Point, Times, Vertex, Visitor};
+use crate::media::path_numbers::PathNumbers;
 use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
-use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
 use raywright_scene::{Camera, EmissionSample, Emitters, Scene};
 
@@ -71,14 +68,16 @@ pub(super) struct Flown {
     pub among: Vec<VolumePhoton>,
 }
 
-/// Trace the paths of a flight in chunks of some thousands, on all threads of the current pool or on this one alone.
-/// `walk` receives a visitor for each chunk. Results depend on the flight alone. After a cancellation they are
-/// incomplete and must be discarded.
-fn chunked<V: Send>(
+/// Trace the paths of a flight in chunks of some thousands, on all threads of the current pool or on this one alone,
+/// with one visitor per chunk. Results depend on the flight alone. After a cancellation they are incomplete and must be
+/// discarded.
+pub(crate) fn flown<'a, V: Visitor<'a> + Send>(
+    scene: &'a Scene,
+    emitters: &'a Emitters<'a>,
+    camera: &'a dyn Camera,
     flight: &PhotonPass,
     (alone, cancel): (bool, &Cancel),
     visitor: impl Fn(usize) -> V + Sync,
-    walk: impl Fn(&mut [Sampler], &mut V) + Sync,
 ) -> Vec<V> {
     /// Number of paths per chunk.
     const TOGETHER: u32 = 4096;
@@ -90,29 +89,15 @@ fn chunked<V: Send>(
             paths.map(|path| Sampler::new(flight.seed, BEYOND | path, flight.number)).collect();
         let mut visitor = visitor(samplers.len());
         if !cancel.is_raised() {
-            walk(&mut samplers, &mut visitor);
+            let mut walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
+            walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
+            walk.set_waves(flight.waves.into_iter().flat_map(|waves| std::iter::repeat_n(waves, samplers.len())));
+            walk.follow(&mut samplers, cancel, &mut visitor);
         }
         visitor
     };
     let chunks = flight.paths.div_ceil(TOGETHER);
     if alone { (0..chunks).map(follow).collect() } else { parallel::map(chunks as usize, |chunk| follow(chunk as u32)) }
-}
-
-/// Trace the paths of a flight between surfaces, on all threads or on this one alone, with one visitor per chunk.
-pub(crate) fn flown<'a, V: Visitor<'a> + Send>(
-    scene: &'a Scene,
-    emitters: &'a Emitters<'a>,
-    camera: &'a dyn Camera,
-    flight: &PhotonPass,
-    (alone, cancel): (bool, &Cancel),
-    visitor: impl Fn(usize) -> V + Sync,
-) -> Vec<V> {
-    chunked(flight, (alone, cancel), visitor, |samplers, visitor| {
-        let mut walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
-        walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
-        walk.set_waves(flight.waves.into_iter().flat_map(|waves| std::iter::repeat_n(waves, samplers.len())));
-        walk.follow(samplers, cancel, visitor);
-    })
 }
 
 /// Trace photons and return the stored ones.
@@ -126,16 +111,7 @@ pub(super) fn fly<'a>(
 ) -> Flown {
     let share = 1.0 / f64::from(flight.paths);
     let storing = |_| Storing { share, caustic: flight.caustic, chains: Vec::new(), stored: Flown::default() };
-    let parts = if scene.plan().needs().media {
-        chunked(flight, (alone, cancel), storing, |samplers, visitor| {
-            let mut walk = MediaLightWalk::new(scene, emitters, flight.limits, Some(camera));
-            walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
-            walk.set_waves(flight.waves.into_iter().flat_map(|waves| std::iter::repeat_n(waves, samplers.len())));
-            walk.follow(samplers, cancel, visitor);
-        })
-    } else {
-        flown(scene, emitters, camera, flight, (alone, cancel), storing)
-    };
+    let parts = flown(scene, emitters, camera, flight, (alone, cancel), storing);
     parts.into_iter().fold(Flown::default(), |mut all, part| {
         for (all, part) in all.surfaces.iter_mut().zip(part.stored.surfaces) {
             all.extend(part);
@@ -154,60 +130,26 @@ struct Storing {
     stored: Flown,
 }
 
-impl Storing {
-    fn begin(&mut self, path: u32) {
-        self.chains.resize(path as usize + 1, true);
+impl<'a> Visitor<'a> for Storing {
+    fn set_out(&mut self, path: &LightPath, _: &EmissionSample) {
+        self.chains.resize(path.number as usize + 1, true);
     }
 
-    /// Record whether a bounce was specular.
-    fn scattered(&mut self, path: u32, is_sharp: bool) {
-        self.chains[path as usize] &= is_sharp;
-    }
-
-    fn keep(&mut self, arrived: &Arrived, path: u32, (flux, single): (Rgb, bool), bounces: u32, again: Rgb) {
-        if is_matt(arrived.here.bsdf()) {
-            let photon = StoredPhoton::arrived(arrived, (flux * self.share, single), bounces, again);
-            let is_sharp = self.chains[path as usize];
-            self.stored.surfaces[usize::from(!(self.caustic && is_sharp))].push(photon);
-        }
-    }
-}
-
-impl Visitor<'_> for Storing {
-    fn set_out(&mut self, path: &Flying, _: &EmissionSample) {
-        self.begin(path.number);
-    }
-
-    fn meet(&mut self, arrived: &Arrived, path: &Flying, _: &MediumStack, _: (&mut Sampler, Dimensions)) {
-        // Light at the first surface is direct, and found by light sampling.
-        if path.bounce == 1 {
-            return;
-        }
-        self.scattered(path.number, path.is_sharp);
-        self.keep(arrived, path.number, (path.flux, path.single), path.bounce - 1, path.again);
-    }
-}
-
-impl<'a> MediaVisitor<'a> for Storing {
-    fn set_out(&mut self, path: &Drifting, _: &EmissionSample) {
-        self.begin(path.number);
-    }
-
-    fn meet(&mut self, at: &Vertex<'a>, path: &Drifting, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
+    fn meet(&mut self, at: &Vertex<'a>, path: &LightPath, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
         let bounces = path.bounce - 1;
         if bounces > 0 {
-            self.scattered(path.number, path.is_sharp);
+            self.chains[path.number as usize] &= path.is_sharp;
         }
-        match &at.point {
-            Point::Surface { arrived, .. } => {
-                if bounces > 0 {
-                    self.keep(arrived, path.number, (path.flux(), path.single), bounces, path.again);
-                }
-            }
-            Point::Medium { here, came, .. } => {
-                let power = (*came * (self.share / path.going.weights.drawn.mean()), path.single);
-                self.stored.among.push(VolumePhoton::new(here, power, path.again, bounces, &at.media));
-            }
+        if let Point::Medium { here, came, .. } = &at.point {
+            let power = (*came * (self.share / path.going.weights.drawn.mean()), path.single);
+            self.stored.among.push(VolumePhoton::new(here, power, path.again, bounces, &at.media));
+        }
+        // Light at the first surface is direct, and found by light sampling.
+        if let (Some(arrived), true) = (at.matte(), bounces > 0) {
+            let power = (path.flux() * self.share, path.single);
+            let photon = StoredPhoton::arrived(arrived, power, bounces, path.again);
+            let is_sharp = self.chains[path.number as usize];
+            self.stored.surfaces[usize::from(!(self.caustic && is_sharp))].push(photon);
         }
     }
 }
@@ -215,6 +157,7 @@ impl<'a> MediaVisitor<'a> for Storing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use raywright_optics::Rgb;
     use raywright_scene::fixtures::{cornell, furnace};
 
     fn flight(paths: u32, limits: Limits) -> PhotonPass {

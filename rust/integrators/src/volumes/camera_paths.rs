@@ -1,12 +1,12 @@
 //! Camera paths that are followed one by one.
 
-use super::medium_traversal::{MediumTraversal, OnTheWay, RaySegmentState, TraversalEnd};
 use super::path_state::PathState;
 use crate::dimensions::Dimensions;
 use crate::known_light::KnownLight;
 use crate::media::current_medium::Filled;
 use crate::media::equiangular::{PointLights, ScatteringSpan};
-use crate::media::path_numbers::{PathNumbers, depth};
+use crate::media::medium_traversal::{MediumTraversal, OnTheWay, RaySegmentState, TraversalEnd};
+use crate::media::path_numbers::{FurtherNumbers, PathNumbers, depth};
 use crate::media::scattering::Scattering;
 use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
@@ -55,7 +55,8 @@ impl<'a> Walker<'a> {
             Some(known) => known.waves(number),
             None => self.scene.plan().needs().waves.then(|| Waves::of(u)),
         };
-        let mut numbers = PathNumbers::new(&mut sample.sampler);
+        let mut further = FurtherNumbers::new(sample.sampler.paired());
+        let mut numbers = PathNumbers::new(&mut sample.sampler, &mut further);
         // The first wavelength is the hero, unless other paths share the wavelengths: dispersion terminates all but the
         // first. The wavelength that samples distances must be independent of that. For RGB it is any of the three.
         let hero = match (waves, self.known) {

@@ -9,24 +9,11 @@ mod camera_paths;
 mod direct_light;
 mod equiangular;
 mod final_gather;
-mod light_partials;
-mod light_walk;
-mod medium_traversal;
-mod optical_depth;
 mod path_state;
-mod to_camera;
-mod vertex;
-mod volumetric_bdpt;
 
 pub(super) use crate::media::current_medium::Filled;
 pub(super) use crate::media::hit_classification::{ClassifiedHit, meet};
-pub(super) use crate::media::path_numbers::PathNumbers;
 pub(super) use crate::media::scattering::Scattering;
-pub(super) use light_walk::{Drifting, MediaLightWalk, MediaVisitor};
-pub use optical_depth::optical_depths;
-pub(super) use to_camera::{Counting, MediaLightPaths};
-pub(super) use vertex::{Point, Vertex};
-pub(super) use volumetric_bdpt::BothEnds;
 
 use super::known_light::KnownLight;
 use super::media::equiangular::PointLights;

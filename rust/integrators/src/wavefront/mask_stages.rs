@@ -75,6 +75,6 @@ impl WavefrontWorker<'_> {
             shadows.push(&queue.rays.get(i));
             shadows.bring(queue.sample[i], Rgb::new(r[i].into(), g[i].into(), b[i].into()));
         }
-        shadows.add_through(self.scene, false, radiance);
+        shadows.add_through(self.scene, radiance);
     }
 }

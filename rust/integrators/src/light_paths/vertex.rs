@@ -1,4 +1,4 @@
-//! Vertices of volumetric bidirectional paths.
+//! Vertices of light paths and of bidirectional camera paths.
 //!
 //! In media, the extinction takes the place of the surface cosine. A direction of density p that arrives over a
 //! distance d has the density p σ / d² per volume, as it has p cos θ / d² per area on a surface. So MIS treats both
@@ -6,7 +6,8 @@
 //! segment. σ is the mean over the wavelengths. The weights of all strategies still sum to 1, as all use the same
 //! densities. Contributions stay as bounded as without media, since their own transmittance is included.
 
-use crate::light_paths::{Arrived, Onward, onward_pdf};
+use super::adjoint::{Arrived, Onward, onward_pdf};
+use crate::is_matt;
 use crate::media::current_medium::{self, Filled};
 use crate::media::distance_sampling::Collision;
 use crate::media::scattering::Scattering;
@@ -30,10 +31,14 @@ pub(crate) struct Vertex<'a> {
 
 /// Scattering at a vertex.
 #[derive(Clone)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly all are of the larger one, and a box would be allocated for each"
+)]
 pub(crate) enum Point<'a> {
     Surface {
         /// The interaction of a ray without width, which MIS densities refer to.
-        arrived: Box<Arrived<'a>>,
+        arrived: Arrived<'a>,
         /// The interaction of the camera path's wide ray, if that differs.
         wide: Option<Box<SurfaceInteraction>>,
         /// Media of a transmitted ray.
@@ -63,7 +68,7 @@ pub(crate) struct ConnectedVertex {
 impl<'a> Vertex<'a> {
     pub fn of_surface(arrived: Arrived<'a>, through: MediumStack<Filled>, media: MediumStack<Filled>) -> Self {
         let (ray, t) = (arrived.ray, arrived.hit.t);
-        Self { point: Point::Surface { arrived: Box::new(arrived), wide: None, through }, ray, t, media }
+        Self { point: Point::Surface { arrived, wide: None, through }, ray, t, media }
     }
 
     /// Set the interaction of a camera path's wide ray, if that differs.
@@ -110,6 +115,14 @@ impl<'a> Vertex<'a> {
     /// Return whether this is a point of a medium.
     pub fn is_in_medium(&self) -> bool {
         matches!(self.point, Point::Medium { .. })
+    }
+
+    /// Return the surface, if it is a matte one.
+    pub fn matte(&self) -> Option<&Arrived<'a>> {
+        match &self.point {
+            Point::Surface { arrived, .. } if is_matt(arrived.here.bsdf()) => Some(arrived),
+            _ => None,
+        }
     }
 
     /// Return whether it has delta directions only.

@@ -1,11 +1,11 @@
 //! Medium traversal between scattering events.
 
-use crate::media::current_medium::{self, Filled};
-use crate::media::distance_sampling::{Collision, MediumSegment};
-use crate::media::hit_classification::{ClassifiedHit, meet, straight};
-use crate::media::path_numbers::PathNumbers;
-use crate::media::scattering::Scattering;
-use crate::media::spectral_mis::Weights;
+use super::current_medium::{self, Filled};
+use super::distance_sampling::{Collision, MediumSegment};
+use super::hit_classification::{ClassifiedHit, meet, straight};
+use super::path_numbers::PathNumbers;
+use super::scattering::Scattering;
+use super::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::shadows::opacity;
 use raywright_base::math::{Hit, Ray};
@@ -46,8 +46,29 @@ pub(crate) enum TraversalEnd {
     Outside,
 }
 
+/// A path's way to its next scattering event in a medium.
+#[derive(Clone, Copy)]
+pub(crate) struct LeftDepth {
+    /// The wavelength that samples distances.
+    pub hero: usize,
+    /// Its optical depth that is left.
+    pub way: f64,
+    /// `t` at the start of the current medium.
+    pub start: f64,
+}
+
+/// The result of a step.
+pub(crate) enum Step {
+    /// The path goes on along its ray.
+    Passes,
+    /// Its weight is zero.
+    Absorbed,
+    /// It has come to the end of its ray.
+    Ends(TraversalEnd),
+}
+
 /// Returns the light that reaches a path along a span of its ray in a homogeneous scattering medium.
-pub(super) type OnTheWay<'o> =
+pub(crate) type OnTheWay<'o> =
     &'o dyn Fn(&RaySegmentState, [f64; 2], (&Coefficients, Phase), &mut PathNumbers<'_>) -> Rgb;
 
 impl<'a> MediumTraversal<'a> {
@@ -62,70 +83,104 @@ impl<'a> MediumTraversal<'a> {
     pub fn advance(
         &self,
         path: &mut RaySegmentState,
-        (hero, mut way): (usize, f64),
+        (hero, way): (usize, f64),
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
         light: &mut Rgb,
         on_the_way: Option<OnTheWay<'_>>,
     ) -> Option<TraversalEnd> {
-        let mut start = path.ray.t_min;
+        let mut left = LeftDepth { hero, way, start: path.ray.t_min };
         while !cancel.is_raised() {
-            let around = current_medium::around(self.scene, &path.media, &path.ray);
-            let scattering = around.as_ref().filter(|(medium, _)| self.scatters && medium.is_even());
-            let Self { scatters, roulette, waves, .. } = *self;
-            let even = scattering.map(|(medium, within)| {
-                let here = medium.at(within.origin);
-                waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves))
-            });
-            let even = even.filter(|here| !here.scattering.is_black());
-            let mut asked = path.ray;
-            if let Some(here) = even.filter(|here| here.emission.is_black() && on_the_way.is_none()) {
-                // Intersections beyond the scattering event are not needed.
-                let reach = start + way / here.extinction[hero] * (1.0 + 1e-12);
-                asked.t_max = reach.next_up().min(asked.t_max);
-            }
-            let hit = self.scene.intersect_one(&asked);
-            let end = if hit.is_hit() { hit.t } else { f64::INFINITY };
-            if let Some((medium, within)) = around {
-                let span = [start, end];
-                if let (Some(here), Some(lit)) = (even, on_the_way) {
-                    *light += lit(path, span, (&here, medium.phase()), numbers);
-                }
-                let flight = MediumSegment { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
-                let weights = &mut path.weights;
-                if let Some(collision) = flight.fly(weights, (hero, &mut way), &mut numbers.more, cancel, light) {
-                    let (position, before) = (path.ray.at(collision.t), path.ray.direction);
-                    let here = Scattering { position, before, phase: medium.phase() };
-                    return Some(TraversalEnd::Medium { here, collision, span });
-                }
-                if path.weights.carried.is_black() {
-                    return None;
-                }
-            }
-            if !hit.is_hit() {
-                return Some(TraversalEnd::Outside);
-            }
-            start = hit.t;
-            match self.meet(&path.ray, &hit, &path.media) {
-                ClassifiedHit::Passed(beyond, media) => {
-                    (path.ray.t_min, path.media) = (beyond, media);
-                    path.ray.misses[0] = hit.primitive;
-                }
-                ClassifiedHit::Surface { hit, outside, through, beyond } => {
-                    let opacity = opacity(self.scene, &path.ray, &hit);
-                    let straight = straight(self.scene, &path.ray, &hit, outside);
-                    path.ray.misses[0] = hit.primitive;
-                    if opacity < 1.0 && numbers.more.next() >= opacity {
-                        path.ray.t_min = hit.t.next_up();
-                    } else if straight > 0.0 && numbers.more.next() < straight {
-                        (path.ray.t_min, path.media) = (beyond, through);
-                    } else {
-                        return Some(TraversalEnd::Surface { hit, outside, through });
-                    }
-                }
+            let hit = self.scene.intersect_one(&self.next_ray(path, &left, on_the_way.is_some()));
+            match self.step(path, &mut left, &hit, numbers, cancel, light, on_the_way) {
+                Step::Passes => {}
+                Step::Absorbed => return None,
+                Step::Ends(end) => return Some(end),
             }
         }
         None
+    }
+
+    /// Return the ray to the first hit that a path needs to know of: not beyond its scattering event in a homogeneous
+    /// medium.
+    pub fn next_ray(&self, path: &RaySegmentState, left: &LeftDepth, is_lit: bool) -> Ray {
+        let mut ray = path.ray;
+        if let Some(here) = self.even(path).filter(|here| here.emission.is_black() && !is_lit) {
+            let reach = left.start + left.way / here.extinction[left.hero] * (1.0 + 1e-12);
+            ray.t_max = reach.next_up().min(ray.t_max);
+        }
+        ray
+    }
+
+    /// Return the coefficients of a homogeneous medium that scatters at the path's wavelengths, if it is in one.
+    fn even(&self, path: &RaySegmentState) -> Option<Coefficients> {
+        if !self.scatters || self.is_empty() {
+            return None;
+        }
+        let (medium, within) = current_medium::around(self.scene, &path.media, &path.ray)?;
+        let here = medium.is_even().then(|| medium.at(within.origin))?;
+        let here = self.waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves));
+        Some(here).filter(|here| !here.scattering.is_black())
+    }
+
+    /// Return whether the scene has no media.
+    fn is_empty(&self) -> bool {
+        !self.scene.plan().needs().media
+    }
+
+    /// Take a path along its ray to its first hit, and through that if it is no surface for the path.
+    #[allow(clippy::too_many_arguments)]
+    pub fn step(
+        &self,
+        path: &mut RaySegmentState,
+        left: &mut LeftDepth,
+        hit: &Hit,
+        numbers: &mut PathNumbers<'_>,
+        cancel: &Cancel,
+        light: &mut Rgb,
+        on_the_way: Option<OnTheWay<'_>>,
+    ) -> Step {
+        let around = if self.is_empty() { None } else { current_medium::around(self.scene, &path.media, &path.ray) };
+        if let Some((medium, within)) = around {
+            let span = [left.start, if hit.is_hit() { hit.t } else { f64::INFINITY }];
+            if let (Some(lit), Some(here)) = (on_the_way, self.even(path)) {
+                *light += lit(path, span, (&here, medium.phase()), numbers);
+            }
+            let Self { scatters, roulette, waves, .. } = *self;
+            let flight = MediumSegment { medium, ray: within, span, length: 1.0, scatters, roulette, waves };
+            let of_hero = (left.hero, &mut left.way);
+            if let Some(collision) = flight.fly(&mut path.weights, of_hero, numbers.more, cancel, light) {
+                let (position, before) = (path.ray.at(collision.t), path.ray.direction);
+                let here = Scattering { position, before, phase: medium.phase() };
+                return Step::Ends(TraversalEnd::Medium { here, collision, span });
+            }
+            if path.weights.carried.is_black() {
+                return Step::Absorbed;
+            }
+        }
+        if !hit.is_hit() {
+            return Step::Ends(TraversalEnd::Outside);
+        }
+        left.start = hit.t;
+        match self.meet(&path.ray, hit, &path.media) {
+            ClassifiedHit::Passed(beyond, media) => {
+                (path.ray.t_min, path.media) = (beyond, media);
+                path.ray.misses[0] = hit.primitive;
+            }
+            ClassifiedHit::Surface { hit, outside, through, beyond } => {
+                let opacity = opacity(self.scene, &path.ray, &hit);
+                let straight = straight(self.scene, &path.ray, &hit, outside);
+                path.ray.misses[0] = hit.primitive;
+                if opacity < 1.0 && numbers.more.next() >= opacity {
+                    path.ray.t_min = hit.t.next_up();
+                } else if straight > 0.0 && numbers.more.next() < straight {
+                    (path.ray.t_min, path.media) = (beyond, through);
+                } else {
+                    return Step::Ends(TraversalEnd::Surface { hit, outside, through });
+                }
+            }
+        }
+        Step::Passes
     }
 
     /// Attenuate light along a ray that starts in given media, by everything on it. The wavelength that samples by
@@ -159,7 +214,7 @@ impl<'a> MediumTraversal<'a> {
                 let span = [start, end];
                 let Self { scatters, roulette, waves, .. } = *self;
                 let flight = MediumSegment { medium, ray: within, span, length, scatters, roulette, waves };
-                flight.fade(weights, hero, &mut numbers.more, cancel);
+                flight.fade(weights, hero, numbers.more, cancel);
             }
             weights.carried *= left;
             if weights.carried.is_black() {

@@ -1,7 +1,7 @@
 //! Optical depths along rays.
 
-use crate::media::current_medium::{Filled, around};
-use crate::media::distance_sampling::MediumSegment;
+use super::current_medium::{Filled, around};
+use super::distance_sampling::MediumSegment;
 use crate::nesting::{MediumStack, crossed};
 use raywright_base::math::Ray;
 use raywright_optics::Rgb;
