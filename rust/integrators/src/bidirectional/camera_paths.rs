@@ -72,8 +72,8 @@ impl EyeQueue {
     }
 
     /// Append a path and its ray.
-    pub fn push(&mut self, course: &MediumTraversal<'_>, path: EyePath) {
+    pub fn push(&mut self, course: &MediumTraversal<'_>, path: &EyePath) {
         self.rays.push(&course.next_ray(&path.going, &path.left, false));
-        self.paths.push(path);
+        self.paths.push(*path);
     }
 }

@@ -182,7 +182,7 @@ impl<'a> BidirectionalWorker<'a> {
                 None => ((sample.sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2),
             };
             self.further.push(further);
-            let path = EyePath {
+            let mut path = EyePath {
                 sample: number,
                 going: RaySegmentState { ray: sample.ray, weights: Weights::START, media },
                 left: LeftDepth { hero, way: f64::INFINITY, start: 0.0 },
@@ -196,13 +196,13 @@ impl<'a> BidirectionalWorker<'a> {
                 waves,
                 single: false,
             };
-            self.take_off(path, &mut sample.sampler);
+            self.take_off(&mut path, &mut sample.sampler);
         }
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
     /// Queue a path that starts along its ray.
-    fn take_off(&mut self, mut path: EyePath, sampler: &mut Sampler) {
+    fn take_off(&mut self, path: &mut EyePath, sampler: &mut Sampler) {
         let way =
             if self.has_media { depth(sampler.one(Dimensions::of(path.bounce, 0).mask())) } else { f64::INFINITY };
         path.left = LeftDepth { way, start: path.going.ray.t_min, ..path.left };
@@ -230,25 +230,33 @@ impl<'a> BidirectionalWorker<'a> {
             let (going, left) = (&mut path.going, &mut path.left);
             let end = match course.step(going, left, &hit, &mut numbers, cancel, light_here, None) {
                 Step::Passes => {
-                    self.next.push(&course, path);
+                    self.next.push(&course, &path);
                     continue;
                 }
                 Step::Absorbed => continue,
                 Step::Ends(end) => end,
             };
-            let Some((at, parting)) = self.vertex(end, &mut path, light_here) else { continue };
+            let mut parting = None;
+            let Some(at) = self.vertex(end, &mut path, &mut parting, light_here) else { continue };
             let numbers = (&mut numbers, cancel);
             if self.arrive(&at, &mut path, parting, number, numbers, light, light_here) {
-                self.take_off(path, &mut samples[sample].sampler);
+                self.take_off(&mut path, &mut samples[sample].sampler);
             }
         }
         self.further = further;
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
-    /// Return the vertex at the end of a path's ray, with the wavelength dependence that splits the path, after adding
-    /// emission there.
-    fn vertex(&self, end: TraversalEnd, path: &mut EyePath, light: &mut Rgb) -> Option<(Vertex<'a>, Option<Parting>)> {
+    /// Return the vertex at the end of a path's ray, after adding emission there, and the dispersion that splits its
+    /// wavelengths.
+    #[inline(always)]
+    fn vertex(
+        &self,
+        end: TraversalEnd,
+        path: &mut EyePath,
+        parting: &mut Option<Parting>,
+        light: &mut Rgb,
+    ) -> Option<Vertex<'a>> {
         let RaySegmentState { ray, media, .. } = path.going;
         let scene = self.job.scene;
         match end {
@@ -258,28 +266,25 @@ impl<'a> BidirectionalWorker<'a> {
             }
             TraversalEnd::Medium { here, collision, .. } => {
                 path.footprint = path.footprint.at(collision.t);
-                Some((Vertex::of_medium(scene, here, &collision, (ray, media), path.waves.as_ref()), None))
+                Some(Vertex::of_medium(scene, here, &collision, (ray, media), path.waves.as_ref()))
             }
             TraversalEnd::Surface { hit, outside, through } => {
-                let (arrived, parting) = match path.waves {
-                    None => (Arrived::new(scene, ray, hit, outside), None),
-                    Some(waves) => {
-                        let around = [&media, &through].map(MediumStack::dispersion);
-                        Arrived::by_waves(scene, (ray, hit), (outside, around), waves)
-                    }
-                };
+                let mut at = Vertex::of_surface(scene, (ray, hit), outside, (media, through), path.waves, parting);
                 path.footprint = path.footprint.at(hit.t);
                 let width = if self.widths { path.footprint.width } else { 0.0 };
                 let gaze = LookupContext { width, waves: path.waves };
-                let seen = (width > 0.0).then(|| {
-                    let surface = *arrived.here.surface();
-                    SurfaceInteraction::new(scene, &ray, &hit, surface, gaze, arrived.outside)
-                });
-                *light += path.throughput() * self.emitted(&arrived, path, gaze);
-                if parting.is_some_and(|parting| !parting.waits(arrived.here.bsdf())) {
+                if let Point::Surface { arrived, .. } = &at.point {
+                    *light += path.throughput() * self.emitted(arrived, path, gaze);
+                    if width > 0.0 {
+                        let surface = *arrived.here.surface();
+                        let wide = SurfaceInteraction::new(scene, &ray, &hit, surface, gaze, arrived.outside);
+                        at.set_wide(wide);
+                    }
+                }
+                if parting.is_some_and(|parting| !at.waits(&parting)) {
                     path.end_all_but_first();
                 }
-                Some((Vertex::of_surface(arrived, through, media).seen(seen), parting))
+                Some(at)
             }
         }
     }

@@ -112,6 +112,7 @@ pub(crate) fn onward_pdf<B: Bsdf>(here: &SurfaceInteraction<B>, direction: DVec3
 }
 
 impl<'a> Arrived<'a> {
+    #[inline(always)]
     pub fn new(scene: &'a Scene, ray: Ray, hit: Hit, outside: f64) -> Self {
         let surface = scene.geometry().surface(&ray, &hit);
         let here = SurfaceInteraction::new(scene, &ray, &hit, surface, 0.0, outside);

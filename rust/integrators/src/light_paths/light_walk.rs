@@ -1,6 +1,6 @@
 //! Tracing of light paths: all of a batch take each ray together.
 
-use super::adjoint::{Arrived, Onward};
+use super::adjoint::Onward;
 use super::dimensions::{Dimensions, EmissionDimensions};
 use super::vertex::{Point, Vertex};
 use crate::media::current_medium::Filled;
@@ -145,9 +145,9 @@ impl Queue {
         self.paths.clear();
     }
 
-    fn push(&mut self, course: &MediumTraversal<'_>, path: LightPath) {
+    fn push(&mut self, course: &MediumTraversal<'_>, path: &LightPath) {
         self.rays.push(&course.next_ray(&path.going, &path.left, false));
-        self.paths.push(path);
+        self.paths.push(*path);
     }
 }
 
@@ -267,14 +267,14 @@ impl<'a> LightWalk<'a> {
                 come_from_afar(&MediumTraversal::alone(self.scene, waves), &mut path, &mut numbers, cancel, visitor);
             }
             if !path.going.weights.carried.is_black() {
-                self.take_off(path, samplers);
+                self.take_off(&mut path, samplers);
             }
         }
         std::mem::swap(&mut self.now, &mut self.next);
     }
 
     /// Queue a path that starts along its ray.
-    fn take_off(&mut self, mut path: LightPath, samplers: &mut [Sampler]) {
+    fn take_off(&mut self, path: &mut LightPath, samplers: &mut [Sampler]) {
         let way = if self.has_media {
             depth(samplers[path.number as usize].one(Dimensions::of(path.bounce).mask()))
         } else {
@@ -282,7 +282,7 @@ impl<'a> LightWalk<'a> {
         };
         path.left = LeftDepth { way, start: path.going.ray.t_min, ..path.left };
         path.before = path.flux();
-        let course = self.course(&path);
+        let course = self.course(path);
         self.next.push(&course, path);
     }
 
@@ -297,7 +297,7 @@ impl<'a> LightWalk<'a> {
             let step = course.step(&mut path.going, &mut path.left, &hit, numbers, cancel, &mut glow, None);
             let end = match step {
                 Step::Passes => {
-                    self.next.push(&course, path);
+                    self.next.push(&course, &path);
                     continue;
                 }
                 Step::Absorbed => {
@@ -320,18 +320,13 @@ impl<'a> LightWalk<'a> {
                     Vertex::of_medium(self.scene, here, &collision, (ray, media), path.waves.as_ref())
                 }
                 TraversalEnd::Surface { hit, outside, through } => {
-                    let (arrived, parting) = match path.waves {
-                        None => (Arrived::new(self.scene, ray, hit, outside), None),
-                        Some(waves) => {
-                            let around = [&media, &through].map(MediumStack::dispersion);
-                            Arrived::by_waves(self.scene, (ray, hit), (outside, around), waves)
-                        }
-                    };
-                    waiting = parting.filter(|parting| parting.waits(arrived.here.bsdf()));
-                    if parting.is_some() && waiting.is_none() {
+                    let (scene, waves) = (self.scene, path.waves);
+                    let at = Vertex::of_surface(scene, (ray, hit), outside, (media, through), waves, &mut waiting);
+                    if waiting.is_some_and(|parting| !at.waits(&parting)) {
+                        waiting = None;
                         path.end_all_but_first();
                     }
-                    Vertex::of_surface(arrived, through, media)
+                    at
                 }
             };
             let again = at.repeat_correction();
@@ -343,7 +338,7 @@ impl<'a> LightWalk<'a> {
             path.bounce += 1;
             visitor.meet(&at, &path, numbers, dimensions, cancel);
             if self.limits.go_on(self.scene, &at, &mut path, waiting, numbers, dimensions, visitor) {
-                self.take_off(path, samplers);
+                self.take_off(&mut path, samplers);
             }
         }
         std::mem::swap(&mut self.now, &mut self.next);

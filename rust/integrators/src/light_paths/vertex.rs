@@ -12,7 +12,8 @@ use crate::media::current_medium::{self, Filled};
 use crate::media::distance_sampling::Collision;
 use crate::media::scattering::Scattering;
 use crate::nesting::MediumStack;
-use raywright_base::math::{DVec3, Ray};
+use crate::terminate_wavelengths::Parting;
+use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
 use raywright_scene::media::Coefficients;
@@ -66,17 +67,38 @@ pub(crate) struct ConnectedVertex {
 }
 
 impl<'a> Vertex<'a> {
-    pub fn of_surface(arrived: Arrived<'a>, through: MediumStack<Filled>, media: MediumStack<Filled>) -> Self {
-        let (ray, t) = (arrived.ray, arrived.hit.t);
-        Self { point: Point::Surface { arrived, wide: None, through }, ray, t, media }
+    /// Make the vertex of a ray's hit, given the media on both sides, and the dispersion that splits its wavelengths.
+    #[inline(always)]
+    pub fn of_surface(
+        scene: &'a Scene,
+        (ray, hit): (Ray, Hit),
+        outside: f64,
+        (media, through): (MediumStack<Filled>, MediumStack<Filled>),
+        waves: Option<Waves>,
+        parting: &mut Option<Parting>,
+    ) -> Self {
+        let arrived = match waves {
+            None => Arrived::new(scene, ray, hit, outside),
+            Some(waves) => {
+                let around = [&media, &through].map(MediumStack::dispersion);
+                let (arrived, parts) = Arrived::by_waves(scene, (ray, hit), (outside, around), waves);
+                *parting = parts;
+                arrived
+            }
+        };
+        Self { point: Point::Surface { arrived, wide: None, through }, ray, t: hit.t, media }
     }
 
-    /// Set the interaction of a camera path's wide ray, if that differs.
-    pub fn seen(mut self, seen: Option<SurfaceInteraction>) -> Self {
+    /// Return whether dispersion waits for the direction of a path from here.
+    pub fn waits(&self, parting: &Parting) -> bool {
+        matches!(&self.point, Point::Surface { arrived, .. } if parting.waits(arrived.here.bsdf()))
+    }
+
+    /// Set the interaction of a camera path's wide ray.
+    pub fn set_wide(&mut self, seen: SurfaceInteraction) {
         if let Point::Surface { wide, .. } = &mut self.point {
-            *wide = seen.map(Box::new);
+            *wide = Some(Box::new(seen));
         }
-        self
     }
 
     pub fn of_medium(
