@@ -54,8 +54,8 @@ class Bidirectional(CoreIntegrator):
     ------
     ValueError
         If a number is out of its range, or `radius` or `photons` is given without `vertex_merging`. When
-        rendering: with `adaptive=True`; if no path can start at a light of the scene (infinite emitters,
-        emitters that move in instances); or with `vertex_merging`, if the scene has media.
+        rendering: with `adaptive=True`; or if no path can start at a light of the scene (infinite emitters,
+        emitters that move in instances).
     TypeError
         If an argument is not a number, or `vertex_merging` is neither True nor False.
 

@@ -1,8 +1,8 @@
 //! Sessions of integrators that follow paths from the camera.
 
 use super::known_light::KnownLight;
+use super::one_by_one::OneByOne;
 use super::path_settings::PathSettings;
-use super::volumes::OneByOne;
 use super::wavefront::Wavefront;
 use super::{Guide, Job, Session};
 use raywright_base::workers::Cancel;

@@ -19,6 +19,7 @@ mod light_traced;
 mod media;
 mod mis_weight;
 mod nesting;
+mod one_by_one;
 mod path;
 mod path_settings;
 mod path_sharing;
@@ -34,7 +35,6 @@ mod terminate_wavelengths;
 #[cfg(test)]
 mod tests;
 mod transparent;
-mod volumes;
 mod wavefront;
 mod whitted;
 mod widths;

@@ -114,6 +114,26 @@ def test_a_disk_has_its_bias_and_tells_it(caustic, radius, expected):
     assert abs(left) < (1 - expected) / 3 + 7 * error
 
 
+@pytest.mark.parametrize("opacity", [0.25, 1.0])
+@pytest.mark.parametrize(
+    "way",
+    [
+        rw.PhotonMap(30_000, radius=0.25, final_gather=0),
+        rw.Bidirectional(vertex_merging=True, radius=0.25, photons=30_000),
+    ],
+)
+def test_a_masked_floor_is_as_bright_as_it_is_opaque(way, opacity):
+    # Light through a pane is found by photons alone. Those that pass the mask are not stored; the others
+    # stand for them too, since the camera sees the floor by the same chance.
+    floor = square(2.0, 0.0, material=rw.Mask(rw.Diffuse(0.5), opacity))
+    pane = square(3.0, 0.5, material=rw.Dielectric(1.0))
+    scene = rw.Scene([floor, pane], lights=[rw.DirectionalLight((0, 0, -1), 1.0)])
+    look = rw.Orthographic((0, 0, 0.4), (0, 0, 0), up=(0, 1, 0), width=8, height=8, scale=0.5)
+    light = [2 * math.pi * picture(scene, look, way, 16, seed=seed).rgb.mean() for seed in range(4)]
+    assert np.std(light, ddof=1) / 2 < 0.02 * opacity
+    assert abs(np.mean(light) - opacity) < 0.08 * opacity
+
+
 @pytest.mark.parametrize(("x", "y"), [(1.9999, 0.0), (1.9999, 1.9999), (1.9, 0.3)])
 @pytest.mark.parametrize(("photons", "nearest"), [(20_000, None), (30_000, 32)])
 def test_edges_are_as_bright_as_what_is_in_the_middle(x, y, photons, nearest):

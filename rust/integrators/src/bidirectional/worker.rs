@@ -7,7 +7,7 @@ use super::{Bidirection, PathStrategy};
 use crate::dimensions::Dimensions;
 use crate::light_paths::{Arrived, LightEnds, LightWalk, Limits, Partial, Point, Times, Vertex};
 use crate::media::current_medium::Filled;
-use crate::media::medium_traversal::{LeftDepth, MediumTraversal, RaySegmentState, Step, TraversalEnd};
+use crate::media::medium_traversal::{LeftDepth, MediumTraversal, RaySegmentState, SegmentEnd, TraversalEnd};
 use crate::media::path_numbers::{FurtherNumbers, PathNumbers, depth};
 use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
@@ -229,12 +229,12 @@ impl<'a> BidirectionalWorker<'a> {
             numbers.ray = Dimensions::of(path.bounce, 0);
             let (going, left) = (&mut path.going, &mut path.left);
             let end = match course.step(going, left, &hit, &mut numbers, cancel, light_here, None) {
-                Step::Passes => {
+                SegmentEnd::Passes => {
                     self.next.push(&course, &path);
                     continue;
                 }
-                Step::Absorbed => continue,
-                Step::Ends(end) => end,
+                SegmentEnd::Absorbed => continue,
+                SegmentEnd::Ends(end) => end,
             };
             let mut parting = None;
             let Some(at) = self.vertex(end, &mut path, &mut parting, light_here) else { continue };

@@ -4,7 +4,7 @@ use super::adjoint::Onward;
 use super::dimensions::{Dimensions, EmissionDimensions};
 use super::vertex::{Point, Vertex};
 use crate::media::current_medium::Filled;
-use crate::media::medium_traversal::{LeftDepth, MediumTraversal, RaySegmentState, Step, TraversalEnd};
+use crate::media::medium_traversal::{LeftDepth, MediumTraversal, RaySegmentState, SegmentEnd, TraversalEnd};
 use crate::media::path_numbers::{FurtherNumbers, PathNumbers, depth};
 use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
@@ -296,15 +296,15 @@ impl<'a> LightWalk<'a> {
             let mut glow = Rgb::ZERO;
             let step = course.step(&mut path.going, &mut path.left, &hit, numbers, cancel, &mut glow, None);
             let end = match step {
-                Step::Passes => {
+                SegmentEnd::Passes => {
                     self.next.push(&course, &path);
                     continue;
                 }
-                Step::Absorbed => {
+                SegmentEnd::Absorbed => {
                     visitor.absorb(path.before);
                     continue;
                 }
-                Step::Ends(end) => end,
+                SegmentEnd::Ends(end) => end,
             };
             if self.has_media {
                 visitor.absorb(path.before - path.flux());

@@ -58,7 +58,7 @@ pub(crate) struct LeftDepth {
 }
 
 /// The result of a step.
-pub(crate) enum Step {
+pub(crate) enum SegmentEnd {
     /// The path goes on along its ray.
     Passes,
     /// Its weight is zero.
@@ -93,9 +93,9 @@ impl<'a> MediumTraversal<'a> {
         while !cancel.is_raised() {
             let hit = self.scene.intersect_one(&self.next_ray(path, &left, on_the_way.is_some()));
             match self.step(path, &mut left, &hit, numbers, cancel, light, on_the_way) {
-                Step::Passes => {}
-                Step::Absorbed => return None,
-                Step::Ends(end) => return Some(end),
+                SegmentEnd::Passes => {}
+                SegmentEnd::Absorbed => return None,
+                SegmentEnd::Ends(end) => return Some(end),
             }
         }
         None
@@ -139,7 +139,7 @@ impl<'a> MediumTraversal<'a> {
         cancel: &Cancel,
         light: &mut Rgb,
         on_the_way: Option<OnTheWay<'_>>,
-    ) -> Step {
+    ) -> SegmentEnd {
         let around = if self.is_empty() { None } else { current_medium::around(self.scene, &path.media, &path.ray) };
         if let Some((medium, within)) = around {
             let span = [left.start, if hit.is_hit() { hit.t } else { f64::INFINITY }];
@@ -152,14 +152,14 @@ impl<'a> MediumTraversal<'a> {
             if let Some(collision) = flight.fly(&mut path.weights, of_hero, numbers.more, cancel, light) {
                 let (position, before) = (path.ray.at(collision.t), path.ray.direction);
                 let here = Scattering { position, before, phase: medium.phase() };
-                return Step::Ends(TraversalEnd::Medium { here, collision, span });
+                return SegmentEnd::Ends(TraversalEnd::Medium { here, collision, span });
             }
             if path.weights.carried.is_black() {
-                return Step::Absorbed;
+                return SegmentEnd::Absorbed;
             }
         }
         if !hit.is_hit() {
-            return Step::Ends(TraversalEnd::Outside);
+            return SegmentEnd::Ends(TraversalEnd::Outside);
         }
         left.start = hit.t;
         match self.meet(&path.ray, hit, &path.media) {
@@ -176,11 +176,11 @@ impl<'a> MediumTraversal<'a> {
                 } else if straight > 0.0 && numbers.more.next() < straight {
                     (path.ray.t_min, path.media) = (beyond, through);
                 } else {
-                    return Step::Ends(TraversalEnd::Surface { hit, outside, through });
+                    return SegmentEnd::Ends(TraversalEnd::Surface { hit, outside, through });
                 }
             }
         }
-        Step::Passes
+        SegmentEnd::Passes
     }
 
     /// Attenuate light along a ray that starts in given media, by everything on it. The wavelength that samples by

@@ -1,6 +1,7 @@
 //! Compact storage of surface photons.
 
 use crate::light_paths::Arrived;
+use crate::shadows::opacity;
 use raywright_base::math::{DVec3, Vec3};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
@@ -42,6 +43,8 @@ impl StoredPhoton {
     /// reflectance above 1.
     pub fn arrived(arrived: &Arrived, (power, single): (Rgb, bool), bounces: u32, again: Rgb) -> Self {
         let here = &arrived.here;
+        // A mask lets light pass that is as likely to be stored as it is opaque.
+        let power = power / opacity(arrived.scene, &arrived.ray, &arrived.hit);
         let photon = Self::new(here.position(), arrived.ray.direction, here.normal(), power, bounces);
         // If this surface's own reflectance exceeds 1, the camera path applies its factor.
         let own = here.bsdf().repeat_correction() != Rgb::ONE;

@@ -1,8 +1,9 @@
 //! Compact storage of photons in media.
 
 use super::photon_lookup::Places;
+use crate::media::current_medium::Filled;
+use crate::media::scattering::Scattering;
 use crate::nesting::MediumStack;
-use crate::volumes::{Filled, Scattering};
 use raywright_base::math::{DVec3, Vec3};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;

@@ -2,8 +2,8 @@
 
 use super::job;
 use super::wavefront::assert_equal_samples;
+use crate::one_by_one::OneByOne;
 use crate::path_settings::PathSettings;
-use crate::volumes::OneByOne;
 use crate::wavefront::Wavefront;
 use raywright_base::math::DVec3;
 use raywright_optics::{Dispersion, Dispersive, Phase, Rgb};

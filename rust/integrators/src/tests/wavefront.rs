@@ -2,8 +2,8 @@
 
 use super::kinds::{self, floor};
 use super::{job, samples_of};
+use crate::one_by_one::OneByOne;
 use crate::path_settings::{Follow, PathSettings};
-use crate::volumes::OneByOne;
 use crate::wavefront::Wavefront;
 use crate::{CameraSample, Guide, Integrator, Path, Session};
 use raywright_base::math::{DVec3, Ray, Vec3};

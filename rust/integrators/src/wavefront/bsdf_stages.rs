@@ -33,9 +33,9 @@ impl WavefrontWorker<'_> {
         }
         if !self.scene.lights().is_dark() && self.block.bsdf.asks.contains(&true) {
             let count = self.light_samples(bounce);
-            timed(Part::Light, || {
-                (0..count).for_each(|number| self.ask_for_light_of_any(numbers, bounce, (number, count)))
-            });
+            for number in 0..count {
+                timed(Part::Light, || self.ask_for_light_of_any(numbers, bounce, (number, count)));
+            }
         }
         if self.follows {
             timed(Part::Continuation, || self.scatter_in_all_ways(numbers, bounce, samples));

@@ -1,5 +1,4 @@
-//! Volumetric path tracing: camera paths (`walker`) in batches (`asking`, `together`), light paths (`light_walk`,
-//! `to_camera`), and bidirectional paths (`both_ends`).
+//! Camera paths that are followed one by one, in f64: where f32 does not suffice, and for tests of the stages.
 //!
 //! Paths carry densities for three wavelengths. One of them, the hero, samples distances. All are weighted by the mean
 //! of the three densities (Wilkie et al., "Hero Wavelength Spectral Sampling", 2014; Miller, Georgiev and Jarosz, "A
@@ -10,10 +9,6 @@ mod direct_light;
 mod equiangular;
 mod final_gather;
 mod path_state;
-
-pub(super) use crate::media::current_medium::Filled;
-pub(super) use crate::media::hit_classification::{ClassifiedHit, meet};
-pub(super) use crate::media::scattering::Scattering;
 
 use super::known_light::KnownLight;
 use super::media::equiangular::PointLights;

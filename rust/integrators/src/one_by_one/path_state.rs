@@ -1,4 +1,4 @@
-//! State of volumetric camera paths.
+//! State of a camera path.
 
 use crate::media::current_medium::Filled;
 use crate::media::spectral_mis::Weights;
