@@ -65,10 +65,8 @@ def docs(session):
 
 @nox.session
 def slow(session):
-    """Run what a newcomer does not wait for: checks of overflow, all cases, and slow Python tests."""
-    cargo(session, "test", "--quiet", "--locked")
-    more = {"RAYWRIGHT_SLOW": "1"}
-    cargo(session, "test", "--quiet", "--release", "--locked", env=more)
+    """Run what a newcomer does not wait for: all cases with checks of overflow, and slow Python tests."""
+    cargo(session, "test", "--quiet", "--locked", env={"RAYWRIGHT_SLOW": "1"})
     run_module(session, "pytest", "-m", "slow", *session.posargs)
 
 

@@ -61,9 +61,8 @@ impl WavefrontWorker<'_> {
         self.end_wavelengths();
     }
 
-    /// Stage: light is drawn for sixteen surfaces of any kind, and its shadow rays are queued: of one light, or where
-    /// surfaces are glossy and lights few, of each, and of these draws one stands for all. It is one of several samples,
-    /// stratified over the lights.
+    /// Stage: draws one of several light samples for sixteen surfaces, stratified over the lights, and queues its shadow
+    /// rays. Where surfaces are glossy and lights few, it draws one of each, and keeps one of these.
     fn ask_for_light_of_any(&mut self, numbers: &SamplerLanes, bounce: u32, (number, count): (u32, u32)) {
         let dimensions = self.dimensions(bounce);
         let (level, block) = (self.level, &mut *self.block);
