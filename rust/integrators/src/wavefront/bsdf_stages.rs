@@ -61,8 +61,8 @@ impl WavefrontWorker<'_> {
         self.end_wavelengths();
     }
 
-    /// Stage: draws one of several light samples for sixteen surfaces, stratified over the lights, and queues its shadow
-    /// rays. Where surfaces are glossy and lights few, it draws one of each, and keeps one of these.
+    /// Stage: draws one of several light samples for sixteen surfaces, stratified over the lights, and queues its
+    /// shadow rays. Where surfaces are glossy and lights few, it draws one of each, and keeps one of these.
     fn ask_for_light_of_any(&mut self, numbers: &SamplerLanes, bounce: u32, (number, count): (u32, u32)) {
         let dimensions = self.dimensions(bounce);
         let (level, block) = (self.level, &mut *self.block);
