@@ -28,7 +28,8 @@ def scale(values: NDArray[Any], cmap: Any = COLORS) -> Any:
     shown = colors.with_extremes(bad=_NONE)
     is_less, is_more = bool((values == -np.inf).any()), bool((values == np.inf).any())
     # matplotlib's attribute for the default ends of a color bar.
-    shown.colorbar_extend = ("neither", "min", "max", "both")[is_less + 2 * is_more]
+    ends: Any = ("neither", "min", "max", "both")[is_less + 2 * is_more]
+    shown.colorbar_extend = ends
     mapped = ScalarMappable(Normalize(low, high), shown)
     # Infinity is masked as NaN is.
     mapped.set_array(np.clip(values, low, high))
