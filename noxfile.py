@@ -97,9 +97,8 @@ def coverage(session, language):
         return
     # Installs llvm-tools of the toolchain by itself.
     cargo(session, "install", "--quiet", "--locked", "cargo-llvm-cov")
-    others = ["--exclude=raywright-python", "--exclude=raywright-benches"]
-    report = ["--release", "--locked", "--summary-only", "--workspace", *others]
-    cargo(session, "llvm-cov", *report, *session.posargs)
+    every = ["--workspace", "--exclude=raywright-python", "--exclude=raywright-benches"]
+    cargo(session, "llvm-cov", "--release", "--locked", "--summary-only", *(session.posargs or every))
 
 
 @nox.session
