@@ -65,8 +65,8 @@ def docs(session):
 
 @nox.session
 def slow(session):
-    """Run what a newcomer does not wait for: all cases with checks of overflow, and slow Python tests."""
-    cargo(session, "test", "--quiet", "--locked", env={"RAYWRIGHT_SLOW": "1"})
+    """Run what a newcomer does not wait for: Rust tests with checks of overflow, and slow Python tests."""
+    cargo(session, "test", "--quiet", "--locked")
     run_module(session, "pytest", "-m", "slow", *session.posargs)
 
 

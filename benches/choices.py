@@ -17,7 +17,9 @@ import numpy as np
 
 import raywright as rw
 
-WAYS = [{"reuse": reuse, "caustics": caustics} for caustics in (False, True) for reuse in (1, 4, 8)]
+WAYS = [
+    {"reuse": reuse, "guiding": guiding} for guiding in ("none", "photons", "learned") for reuse in (1, 4, 8)
+]
 
 
 def mirror_room(side):
@@ -50,7 +52,7 @@ def scenes(side):
 
 def told(way):
     """Return the name of a way."""
-    return f"reuse {way['reuse']}" + ", caustics" * way["caustics"]
+    return f"reuse {way['reuse']}, guiding {way['guiding']}"
 
 
 def relmse(picture, truth):
@@ -60,7 +62,7 @@ def relmse(picture, truth):
 
 def long_picture(scene, camera, samples):
     """Return a picture of many samples, as two halves that tell its own error."""
-    path = rw.Path(reuse=8, caustics=True)
+    path = rw.Path(reuse=8, guiding="photons")
     seeds = 1_000_000, 1_000_001
     halves = [
         rw.render(scene, camera, path, samples=samples, seed=seed, progress=False).rgb for seed in seeds
@@ -84,12 +86,12 @@ def contest(name, scene, camera, arguments):
         wrong.append(relmse(image.rgb.astype(np.float64), truth) - noise)
     rows = [(statistics.median(seconds), statistics.mean(wrong)) for seconds, wrong in records]
     best = min(seconds * wrong for seconds, wrong in rows[1:])
-    names = [f"chosen: {told({'reuse': plan.path.reuse, 'caustics': plan.path.caustics})}", *map(told, WAYS)]
+    names = [f"chosen: {told({'reuse': plan.path.reuse, 'guiding': plan.path.guiding})}", *map(told, WAYS)]
     for way, (seconds, wrong) in zip(names, rows, strict=True):
         product_ = seconds * wrong
         yield f"| {name} | {way} | {seconds:.3f} | {wrong:.2e} | {product_:.2e} | {product_ / best:.2f} |"
     for row in plan.rows:
-        if row.what in ("reuse", "caustics"):
+        if row.what in ("reuse", "guiding"):
             yield f"<!-- {row.what}: {row.chosen}, {row.why} -->"
 
 

@@ -332,7 +332,7 @@ def in_pictures(size, seconds, gpu):
     columns = ("first pass, s", "M samples/s", *(f"{t:g} s" for t in times), f"{seconds:g} s", "z²")
     print(row("picture", "by", *columns))
     print("|---" * (len(columns) + 2) + "|")
-    path, same, wrong = rw.Path(reuse=1, caustics=False), rw.rendering.Independent(), 0
+    path, same, wrong = rw.Path(reuse=1, guiding="none"), rw.rendering.Independent(), 0
     cpu = f"CPU, {os.cpu_count()} threads"
     ways = [(f"{cpu}, its own choice", None, rw.Path(), None), (cpu, None, path, same)]
     if gpu is not None:

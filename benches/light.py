@@ -23,7 +23,7 @@ from render_peers_mitsuba import Mitsuba
 import raywright as rw
 
 WAYS = {
-    "Path": rw.Path(reuse=1, caustics=False),
+    "Path": rw.Path(reuse=1, guiding="none"),
     "Path, as chosen": rw.Path(),
     "LightTraced": rw.LightTraced(),
     "Bidirectional": rw.Bidirectional(),

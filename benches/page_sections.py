@@ -132,7 +132,7 @@ def pictures(sizes):
             print(f"(mitsuba is left out: {error})")
         # The reference of `render_peers.py`.
         caustics = Raywright(
-            scene, camera, rw.Path(max_depth=depth, reuse=1, caustics=True), rw.rendering.Sobol()
+            scene, camera, rw.Path(max_depth=depth, reuse=1, guiding="photons"), rw.rendering.Sobol()
         )
         for engines, long in ((ours, caustics), (theirs, theirs[0] if theirs else None)):
             if not engines:

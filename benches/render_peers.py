@@ -39,7 +39,9 @@ class Raywright:
         if sampler is None:
             self.name = "raywright"
         else:
-            ways = " reuse" * (integrator.reuse > 1) + " caustics" * integrator.caustics
+            ways = " reuse" * (integrator.reuse > 1) + f" {integrator.guiding}" * (
+                integrator.guiding != "none"
+            )
             self.name = f"raywright {type(sampler).__name__.lower()}{ways}"
         self.sampler = sampler
         self.scene, self.camera, self.integrator = scene, camera, integrator
@@ -115,8 +117,8 @@ def _blocks(picture):
 def contest(name, make, arguments):
     """Render a scene by all in turns; returns lines of a table."""
     scene, camera, depth = make()
-    plain = {"reuse": 1, "caustics": False}
-    ways = plain, plain | {"reuse": REUSE}, plain | {"caustics": True}
+    plain = {"reuse": 1, "guiding": "none"}
+    ways = plain, plain | {"reuse": REUSE}, plain | {"guiding": "photons"}
     kinds = [(rw.rendering.Independent(), plain)] + [(rw.rendering.Sobol(), way) for way in ways]
     ours = [Raywright(scene, camera, rw.Path(max_depth=depth))]
     ours += [Raywright(scene, camera, rw.Path(max_depth=depth, **way), sampler) for sampler, way in kinds]

@@ -78,7 +78,9 @@ def main():
         if name not in known:
             parser.error(f"--scene is {name!r}, expected one of {', '.join(known)}")
         scene, camera, depth = known[name]()
-        path = rw.Path(max_depth=depth, reuse=arguments.reuse, caustics=name == "spheres")
+        path = rw.Path(
+            max_depth=depth, reuse=arguments.reuse, guiding="photons" if name == "spheres" else "none"
+        )
         columns[name] = told(scene, camera, path, arguments)
     print(f"{_core.simd()}, ns a vertex\n")
     print(f"| part | {' | '.join(columns)} |\n|---|{'---|' * len(columns)}")

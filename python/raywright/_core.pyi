@@ -466,8 +466,8 @@ def student(level: float, degrees: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def chances(
     scene: CompiledScene, path: Any, threads: int | None, look: Callable[[], None] | None
-) -> tuple[bool, bool]:
-    """Return whether paths can be reused in a scene, and whether there are mirrors or glass to aim at.
+) -> tuple[bool, bool, bool]:
+    """Return whether paths can be reused in a scene, guided by photons, and guided by what they learn.
 
     Signals are checked, and ``look`` is called, as by `Rendering.go_on`.
     """

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..arrays import integer
+from ..arrays import choice, integer
 from .base import CoreIntegrator
 
 # Larger patches need more rays than they save.
 _SIDES = (1, 2, 4, 8)
+GUIDING = ("none", "photons", "learned")
 
 
 @dataclass(frozen=True)
@@ -41,21 +42,27 @@ class Path(CoreIntegrator):
         grid of patches is shifted for each sample. Errors of neighboring pixels are correlated, and noise is
         as coarse as a patch. The error estimate accounts for this: its interval is wider, most of all in
         small pictures.
-    caustics : bool, optional
-        True if matt surfaces guide paths towards caustics; if not given, `render` chooses by a pilot, and
-        False for small pictures of few samples. Photons are traced before the first render of a scene. Paths
-        then sample some of their directions towards the origins of nearby photons (Jensen 1995), and the
-        others as usual; both are weighted by the combined density, so there is no bias. It pays where small
-        lamps shine through glass or into mirrors, because it removes most fireflies. Elsewhere it costs time
-        and takes samples from other light; without mirrors and smooth glass it has no effect. With `reuse`,
-        the first surfaces of shared paths are not guided.
+    guiding : str, optional
+        How matt surfaces guide paths: "none", "photons" or "learned". If not given, `render` chooses by a
+        pilot, and "none" for small pictures of few samples. Guided paths sample some of their directions
+        towards the origins of known light, and the others as usual; both are weighted by the combined
+        density, so there is no bias.
+
+        "photons" traces photons from the lights through mirrors and glass before the first render of a scene
+        (Jensen 1995). It pays where small lamps shine through glass or into mirrors, because it removes most
+        fireflies; without mirrors and smooth glass it has no effect.
+
+        "learned" traces paths from the camera before the first render of a view, guided by photons if there
+        are any, and learns where indirect light comes from (Müller, Gross and Novák 2017). It pays where
+        light comes through small openings, such as a keyhole. Elsewhere both cost time. Neither guides paths
+        among media or in spectral scenes.
 
     Raises
     ------
     ValueError
-        If a number is negative, or `reuse` is not one of the four.
+        If a number is negative, `reuse` is not one of the four, or `guiding` not one of the three.
     TypeError
-        If it is not an integer, or `caustics` is not True, False or None.
+        If a number is not an integer.
 
     See Also
     --------
@@ -75,7 +82,7 @@ class Path(CoreIntegrator):
     max_depth: int | None = None
     roulette_depth: int = 4
     reuse: int | None = None
-    caustics: bool | None = None
+    guiding: str | None = None
 
     def __post_init__(self) -> None:
         most = 2**32 - 1
@@ -87,5 +94,5 @@ class Path(CoreIntegrator):
             if reuse not in _SIDES:
                 raise ValueError(f"reuse must be 1, 2, 4 or 8, got {reuse}")
             object.__setattr__(self, "reuse", reuse)
-        if not isinstance(self.caustics, bool | None):
-            raise TypeError(f"caustics must be True, False or None, got {self.caustics!r}")
+        if self.guiding is not None:
+            choice("guiding", self.guiding, GUIDING)

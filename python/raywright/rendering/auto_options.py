@@ -23,23 +23,23 @@ _REUSE, _LARGE, _NOISY = 4, 8, 0.2
 # one. It is not measured on the spot: the same has to be chosen everywhere, every time.
 _COSTS: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.3, _REUSE: 0.5, _LARGE: 1.3},
-    "caustics": {False: 0.0, True: 1.2},
+    "guiding": {"none": 0.0, "photons": 1.2, "learned": 1.2},
 }
 # Paths in media are longer, so that sharing costs relatively less.
 _MEDIA = "smoke and haze"
 _COSTS_AMONG: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.1, _REUSE: 0.2, _LARGE: 0.5},
-    "caustics": {False: 0.0, True: 0.0},
+    "guiding": {"none": 0.0, "photons": 0.0, "learned": 0.0},
 }
 # An option must improve by this factor, since a pilot may be wrong.
 _BETTER = 0.9
 # One in this many samples of a render may go to a pilot of each option.
 _SHARE = 64
-_PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
-_MORE: dict[str, Any] = {"reuse": _REUSE, "caustics": True}
+_PLAIN: dict[str, Any] = {"reuse": 1, "guiding": "none"}
+_MORE: dict[str, Any] = {"reuse": _REUSE, "guiding": "photons"}
 _NEVER = {
     "reuse": "no paths can be shared here",
-    "caustics": "no light comes by way of mirrors or glass",
+    "guiding": "no light comes by way of mirrors or glass",
 }
 
 
@@ -92,7 +92,8 @@ def followed(
     chosen = fixed
     if compiled is not None:
         try:
-            can = dict(zip(_PLAIN, _core.chances(compiled, path, threads, look), strict=True))
+            *some, learns = _core.chances(compiled, path, threads, look)
+            can, learns = dict(zip(_PLAIN, some, strict=True)), learns and "guiding" in open_
             why |= {name: _NEVER[name] for name in open_ if not can[name]}
             open_ = [name for name in open_ if can[name]]
 
@@ -107,12 +108,14 @@ def followed(
                 return [error * cost(way) for error, way in zip(errors, ways, strict=True)]
 
             # A single option left needs no pilot.
-            ways, worth = _tried(fixed, open_, sent, cost) if open_ else ([fixed], [0.0])
+            ways, worth = _tried(fixed, open_, learns, sent, cost) if open_ or learns else ([fixed], [0.0])
         except StoppedError:
             why |= dict.fromkeys(open_, "it was stopped before a pilot was back")
         else:
             if min(worth) < _BETTER * worth[0]:
                 chosen = ways[worth.index(min(worth))]
+            if learns and any(way["guiding"] == "learned" for way in ways):
+                open_ = list(dict.fromkeys((*open_, "guiding")))
             why |= {name: _told(name, ways, worth) for name in open_}
     rows = tuple(Choice(name, str(chosen[name]), why[name]) for name in _PLAIN)
     return changed(path, **chosen), rows, time.perf_counter() - began
@@ -121,6 +124,7 @@ def followed(
 def _tried(
     fixed: dict[str, Any],
     names: list[str],
+    learns: bool,
     sent: Callable[[list[dict[str, Any]]], list[float]],
     cost: Callable[[Mapping[str, Any]], float],
 ) -> tuple[list[dict[str, Any]], list[float]]:
@@ -128,6 +132,16 @@ def _tried(
     ways = [fixed | dict(zip(names, way, strict=True)) for way in product(*_options(names))]
     worth = sent(ways)
     least = ways[worth.index(min(worth))]
+    if learns and min(worth) > _NOISY * cost(least):
+        # Training pays only where few paths find the light.
+        learned = [
+            least | {"reuse": reuse, "guiding": "learned"}
+            for reuse in sorted({fixed["reuse"], least["reuse"]})
+        ]
+        before, *after = sent([least, *learned])
+        ways += learned
+        worth += [min(worth) * one / before for one in after]
+        least = ways[worth.index(min(worth))]
     if "reuse" in names and least["reuse"] == _REUSE:
         larger = least | {"reuse": _LARGE}
         small, large = sent([least, larger])

@@ -78,7 +78,7 @@ class Job:
             "camera": digest(self.camera),
             "integrator": digest(self.integrator),
             "reuse": None if path is None else path.reuse,
-            "caustics": None if path is None else path.caustics,
+            "guiding": None if path is None else path.guiding,
             "seed": self.seed,
             "adaptive": self.adaptive,
             "clamp": self.clamp,

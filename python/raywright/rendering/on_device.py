@@ -30,7 +30,7 @@ _LAID_OUT = 4_000_000
 # Samples per pass from this number on, if neither an error nor a time limits the render.
 _PASS = 64
 # Options of paths on the device.
-_PLAIN: dict[str, Any] = {"reuse": 1, "caustics": False}
+_PLAIN: dict[str, Any] = {"reuse": 1, "guiding": "none"}
 
 
 def check_device(device: Any) -> None:

@@ -53,7 +53,7 @@ class RenderPlan:
     >>> camera = rw.Camera((0, 0, 5), (0, 0, 0), width=4, height=4)
     >>> image = rw.render(rw.Scene(rw.Sphere(emission=1.0)), camera, samples=4, seed=1, progress=False)
     >>> [row.what for row in image.plan.rows]
-    ['sampler', 'batch', 'reuse', 'caustics']
+    ['sampler', 'batch', 'reuse', 'guiding']
     >>> image.plan.sampler
     Independent()
     """

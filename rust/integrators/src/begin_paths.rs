@@ -4,7 +4,7 @@ use super::known_light::KnownLight;
 use super::one_by_one::OneByOne;
 use super::path_settings::PathSettings;
 use super::wavefront::Wavefront;
-use super::{Guide, Job, Session};
+use super::{Job, Session};
 use raywright_base::workers::Cancel;
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ pub(super) fn begin<'a>(settings: PathSettings, job: Job<'a>, cancel: &Cancel) -
     if !Wavefront::takes(&job) {
         return Box::new(OneByOne::new(job, settings, None));
     }
-    let guide = if settings.guided { Guide::of(job.scene, cancel) } else { None };
+    let guide = settings.guiding.guide(job.scene, job.camera, cancel);
     Box::new(Wavefront::new(job, settings, guide, None))
 }
 

@@ -49,7 +49,7 @@ pub use cone_traced::ConeTraced;
 pub use direct::Direct;
 pub use distributed::Distributed;
 pub use first_seen::FirstSeen;
-pub use guiding::{Guide, LocalGuide, is_matt};
+pub use guiding::{Guide, Guiding, LocalGuide, is_matt};
 pub use light_traced::LightTraced;
 pub use media::optical_depth::optical_depths;
 pub use path::Path;

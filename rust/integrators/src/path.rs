@@ -4,7 +4,7 @@ use super::begin_paths::begin;
 use super::media::path_reuse;
 use super::path_settings::PathSettings;
 use super::path_sharing;
-use super::{Integrator, Job, Session};
+use super::{Guiding, Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_scene::Scene;
 
@@ -21,33 +21,34 @@ pub struct Path {
     /// must be diffuse, or both vertices must be points of one homogeneous medium. 1 disables reuse
     /// ([`Integrator::patch`]).
     pub reuse: u32,
-    /// Guide paths at matte surfaces toward light through mirrors and glass ([`super::Guide`]).
-    pub caustics: bool,
+    /// Guiding of paths at matte surfaces.
+    pub guiding: Guiding,
 }
 
 impl Default for Path {
     fn default() -> Self {
-        Self { max_depth: None, roulette_depth: 4, reuse: 1, caustics: false }
+        Self { max_depth: None, roulette_depth: 4, reuse: 1, guiding: Guiding::None }
     }
 }
 
 impl Path {
-    /// Return whether paths are guided in a scene, as far as known without photons. Guiding requires specular surfaces,
-    /// which scenes of the plain variant do not have, and light beyond them. Paths in media and spectral paths are
-    /// never guided.
-    pub fn is_guided(&self, scene: &Scene) -> bool {
-        self.caustics
-            && self.max_depth.is_none_or(|depth| depth > 1)
-            && scene.plan().needs().scattering
-            && !scene.plan().needs().media
-            && !scene.plan().needs().waves
+    /// Return how paths are guided in a scene, as far as known without photons and training. Photons require specular
+    /// surfaces, which scenes of the plain variant do not have. Paths in media and spectral paths are never guided.
+    pub fn guiding_in(&self, scene: &Scene) -> Guiding {
+        let needs = scene.plan().needs();
+        let may_be = self.max_depth.is_none_or(|depth| depth > 1) && !needs.media && !needs.waves;
+        match self.guiding {
+            Guiding::Photons if !needs.scattering => Guiding::None,
+            guiding if may_be => guiding,
+            _ => Guiding::None,
+        }
     }
 }
 
 impl Integrator for Path {
     fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-        let (shares, guided) = (self.patch(job.scene) > 1, self.is_guided(job.scene));
-        let settings = PathSettings { shares, guided, ..PathSettings::path(self.max_depth, self.roulette_depth) };
+        let (shares, guiding) = (self.patch(job.scene) > 1, self.guiding_in(job.scene));
+        let settings = PathSettings { shares, guiding, ..PathSettings::path(self.max_depth, self.roulette_depth) };
         begin(settings, job, cancel)
     }
 

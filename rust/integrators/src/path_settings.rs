@@ -1,5 +1,6 @@
 //! Settings of integrators that follow paths from the camera.
 
+use super::Guiding;
 use super::known_light::Gather;
 use raywright_optics::Rgb;
 
@@ -39,8 +40,8 @@ pub(super) struct PathSettings {
     pub least: f64,
     /// True if paths of a group share radiance, in scenes where they can ([`super::path_sharing::can_share`]).
     pub shares: bool,
-    /// True if paths are guided to light through mirrors and glass.
-    pub guided: bool,
+    /// Guiding of paths.
+    pub guiding: Guiding,
     /// Use of known light; `None` without.
     pub gather: Option<Gather>,
 }
@@ -59,7 +60,7 @@ impl PathSettings {
             ambient: Rgb::ZERO,
             least: 0.0,
             shares: false,
-            guided: false,
+            guiding: Guiding::None,
             gather: None,
         }
     }

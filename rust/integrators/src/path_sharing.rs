@@ -8,16 +8,20 @@
 //! point i takes of yⱼ the share G(xᵢ, yⱼ) / Σₖ G(xₖ, yⱼ), times its reflectance. The sum includes all mutual
 //! visibilities, so the estimate is unbiased for any geometry in between. Shares are at most 1: no sample is amplified.
 //!
+//! Where a [`Guide`] aims paths at their first points, pₖ is the density of its mixture with diffuse scattering.
+//!
 //! Direct light at the first point, and emission of yⱼ, are not shared. Neither is a path whose second point is not
 //! diffuse, or whose shading normal there had to be bent ([`SurfaceInteraction::GRAZING`]): the scattering of such a
 //! point depends on the direction to the first point. These directions are in the domain of no technique that shares.
 
+use crate::{Guide, LocalGuide};
 use raywright_base::math::single::{choose, mask};
 use raywright_base::math::{DVec3, LANES, PathRays, Ray, SingleLanes, Vec3};
 use raywright_base::simd::{Column, Level, loops, pack};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::{Scene, SurfaceInteraction};
+use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Whether paths can share in a scene: two points see each other or do not, at any time, and what is found at a point
@@ -46,7 +50,7 @@ pub(crate) struct SharingPoint {
 
 /// First points, by the number of the sample, in columns.
 #[derive(Default)]
-struct FirstPoints {
+struct FirstPoints<'a> {
     position: [Vec<f64>; 3],
     origin: [Vec<f64>; 3],
     /// Zero where nothing is shared.
@@ -55,6 +59,8 @@ struct FirstPoints {
     primitive: Vec<u32>,
     /// The reflectance, times the throughput of the path up to the point.
     reflectance: Vec<Rgb>,
+    /// Where paths aim from; empty without a guide.
+    aims: Vec<Option<LocalGuide<'a>>>,
     /// Whether all points, the second ones included, have shading normals that equal the geometric ones.
     are_flat: bool,
 }
@@ -78,6 +84,7 @@ struct SecondPoint {
 /// A second point whose light is shared.
 struct Shared {
     found: Rgb,
+    position: DVec3,
     /// The sample whose path came there, and the throughput of that path.
     sample: u32,
     throughput: Rgb,
@@ -87,9 +94,10 @@ struct Shared {
 }
 
 /// The paths of a batch, and the rays between their points.
-pub(crate) struct PathSharing {
+pub(crate) struct PathSharing<'a> {
     level: Level,
-    first: FirstPoints,
+    guide: Option<&'a Guide>,
+    first: FirstPoints<'a>,
     second: Vec<SecondPoint>,
     shared: Vec<Shared>,
     /// For each shared point, the geometry term of each sample of its group, in whole sixteens: 0 where it is not seen.
@@ -191,10 +199,12 @@ loops! {
     }
 }
 
-impl FirstPoints {
+impl<'a> FirstPoints<'a> {
     /// Begins with so many samples, none of which shares.
-    fn begin(&mut self, samples: usize) {
+    fn begin(&mut self, samples: usize, is_guided: bool) {
         let room = samples + LANES;
+        self.aims.clear();
+        self.aims.resize(if is_guided { room } else { 0 }, None);
         self.position.iter_mut().chain(&mut self.origin).for_each(|column| column.resize(room, 0.0));
         self.normal.iter_mut().for_each(|column| column.resize(room, 0.0));
         for column in &mut self.shading {
@@ -207,7 +217,7 @@ impl FirstPoints {
         self.are_flat = true;
     }
 
-    fn set(&mut self, sample: usize, point: &SharingPoint, reflectance: Rgb) {
+    fn set(&mut self, sample: usize, point: &SharingPoint, reflectance: Rgb, guide: Option<&'a Guide>) {
         for axis in 0..3 {
             self.position[axis][sample] = point.position[axis];
             self.origin[axis][sample] = point.origin[axis];
@@ -216,11 +226,23 @@ impl FirstPoints {
         }
         self.primitive[sample] = point.primitive;
         self.reflectance[sample] = reflectance;
+        if let Some(guide) = guide {
+            self.aims[sample] = guide.at(point.position);
+        }
         self.are_flat &= point.shading == point.normal;
     }
 
     fn position(&self, sample: usize) -> DVec3 {
         DVec3::new(self.position[0][sample], self.position[1][sample], self.position[2][sample])
+    }
+
+    /// The density of a path's direction from a first point to another point, over that of diffuse scattering.
+    fn denser(&self, level: Level, sample: usize, to: DVec3) -> f64 {
+        let Some(local) = &self.aims[sample] else { return 1.0 };
+        let direction = (to - self.position(sample)).normalize();
+        let [x, y, z] = self.shading.each_ref().map(|axis| f64::from(axis[sample]));
+        let scattered = DVec3::new(x, y, z).dot(direction) / PI;
+        1.0 + local.share() * (local.pdf(level, direction) / scattered - 1.0)
     }
 
     /// The sixteen from a sample on.
@@ -237,11 +259,12 @@ impl FirstPoints {
     }
 }
 
-impl PathSharing {
+impl<'a> PathSharing<'a> {
     /// For workers at a level of vector instructions.
-    pub fn new(level: Level) -> Self {
+    pub fn new(level: Level, guide: Option<&'a Guide>) -> Self {
         Self {
             level,
+            guide,
             first: FirstPoints::default(),
             second: Vec::new(),
             shared: Vec::new(),
@@ -255,7 +278,7 @@ impl PathSharing {
 
     /// Forgets all, and begins with a batch of so many samples.
     pub fn begin(&mut self, samples: usize) {
-        self.first.begin(samples);
+        self.first.begin(samples, self.guide.is_some());
         self.second.clear();
     }
 
@@ -263,7 +286,7 @@ impl PathSharing {
     #[inline]
     pub fn add_first(&mut self, sample: u32, point: &SharingPoint, reflectance: Rgb) {
         if !reflectance.is_black() {
-            self.first.set(sample as usize, point, reflectance);
+            self.first.set(sample as usize, point, reflectance, self.guide);
         }
     }
 
@@ -388,7 +411,7 @@ impl PathSharing {
             self.term[end..full].fill(last.2);
             self.rays.len = full;
         }
-        self.shared.push(Shared { found, sample: own, throughput, group, start });
+        self.shared.push(Shared { found, position: second.position, sample: own, throughput, group, start });
     }
 
     /// Traces the rays, and distributes the light of the shared points.
@@ -401,7 +424,7 @@ impl PathSharing {
                 self.geometry[term as usize] = 0.0;
             }
         }
-        for Shared { found, sample, throughput, group, start } in self.shared.drain(..) {
+        for Shared { found, position, sample, throughput, group, start } in self.shared.drain(..) {
             let count = group.len();
             let terms = &self.geometry[start..][..count.next_multiple_of(LANES)];
             let mut all = 0.0;
@@ -411,8 +434,15 @@ impl PathSharing {
                 radiance[sample as usize] += throughput * found;
                 continue;
             }
-            let of_all = found / f64::from(all);
             let samples = group.start as usize..group.end as usize;
+            let mut all = f64::from(all);
+            if self.guide.is_some() {
+                let seen = samples.clone().zip(terms).filter(|(_, term)| **term > 0.0);
+                let density =
+                    |(first, term): (usize, &f32)| f64::from(*term) * self.first.denser(level, first, position);
+                all = seen.map(density).sum();
+            }
+            let of_all = found / all;
             let taken = radiance[samples.clone()].iter_mut().zip(&self.first.reflectance[samples]);
             if self.first.are_flat {
                 for ((to, reflectance), &term) in taken.zip(terms) {
@@ -442,8 +472,8 @@ mod tests {
     /// The geometry term and the fading between a first and a second point.
     fn between(first: &SharingPoint, second: &SharingPoint) -> [f32; 2] {
         let mut points = FirstPoints::default();
-        points.begin(1);
-        points.set(0, first, Rgb::ONE);
+        points.begin(1, false);
+        points.set(0, first, Rgb::ONE, None);
         let level = Level::current().unwrap();
         let (mut geometry, mut fades) = ([0.0; LANES], [1.0; LANES]);
         let (lanes, scale) = (points.lanes(0), 1.0);

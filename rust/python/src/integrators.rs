@@ -11,7 +11,7 @@ use super::kinds::{Kinds, Read};
 use super::query::CompiledScene;
 use super::signals::heard;
 use raywright::integrators::{
-    AmbientOcclusion, BeamTraced, Bidirectional, Channel, ConeTraced, Direct, Distributed, Integrator, Kernel,
+    AmbientOcclusion, BeamTraced, Bidirectional, Channel, ConeTraced, Direct, Distributed, Guiding, Integrator, Kernel,
     LightTraced, Merge, Path, PhotonMap, ProgressivePhotonMap, Radiosity, RayCast, Whitted, aovs as observe,
 };
 use raywright::optics::Rgb;
@@ -53,7 +53,11 @@ pub fn path(of: &Bound<'_, PyAny>) -> PyResult<Path> {
         max_depth: attribute(of, "max_depth")?,
         roulette_depth: attribute(of, "roulette_depth")?,
         reuse: attribute::<Option<u32>>(of, "reuse")?.unwrap_or(1),
-        caustics: attribute::<Option<bool>>(of, "caustics")?.unwrap_or(false),
+        guiding: match attribute::<Option<String>>(of, "guiding")?.as_deref() {
+            Some("photons") => Guiding::Photons,
+            Some("learned") => Guiding::Learned,
+            _ => Guiding::None,
+        },
     })
 }
 

@@ -15,7 +15,7 @@ use super::query::CompiledScene;
 use super::samplers;
 use super::signals::heard;
 use super::watcher::{Watcher, malformed};
-use raywright::integrators::{Guide, Integrator, Path};
+use raywright::integrators::{Guide, Guiding, Integrator, Path};
 use raywright::render::{self, Progress, RenderError, Settings, Until};
 use raywright::workers::{Cancel, onlookers, pool, watched};
 
@@ -316,8 +316,8 @@ pub fn student<'py>(
     numpy::PyArray1::from_vec(py, quantiles)
 }
 
-/// Returns whether paths could share samples in a scene, and whether there are specular objects to guide light to,
-/// whatever the path's options; photons are traced for the latter. `look` is called whenever signals are handled, and
+/// Returns whether paths could share samples in a scene, whether photons could guide them through specular objects, and
+/// whether their guide could learn, whatever the path's options; photons are traced for the second. `look` is called whenever signals are handled, and
 /// may raise to end it.
 #[pyfunction]
 pub fn chances(
@@ -326,11 +326,12 @@ pub fn chances(
     path: &Bound<'_, PyAny>,
     threads: Option<usize>,
     look: Option<Py<PyAny>>,
-) -> PyResult<(bool, bool)> {
+) -> PyResult<(bool, bool, bool)> {
     let (scene, path) = (&scene.get().0, integrators::path(path)?);
-    let any = Path { reuse: 2, caustics: true, ..path };
+    let any = Path { reuse: 2, guiding: Guiding::Photons, ..path };
+    let learns = Path { guiding: Guiding::Learned, ..path }.guiding_in(scene) == Guiding::Learned;
     let mut watcher = Watcher { progress: None, look, rests: false, raised: None, pause: None, written: None };
-    let aims = |cancel: &Cancel| any.is_guided(scene) && Guide::of(scene, cancel).is_some();
+    let aims = |cancel: &Cancel| any.guiding_in(scene) == Guiding::Photons && Guide::of(scene, cancel).is_some();
     let mut goes_on = true;
     let aims = py.detach(|| {
         watched(threads, aims, || {
@@ -339,7 +340,7 @@ pub fn chances(
         })
     });
     let aims = aims.map_err(PyRuntimeError::new_err)?;
-    if goes_on { Ok((any.patch(scene) > 1, aims)) } else { Err(watcher.error(RenderError::Interrupted)) }
+    if goes_on { Ok((any.patch(scene) > 1, aims, learns)) } else { Err(watcher.error(RenderError::Interrupted)) }
 }
 
 /// Approximate relMSE of some path tracers with few samples, estimated on a few parts of a picture. `look` is called

@@ -10,7 +10,7 @@ use raywright_base::math::Hit;
 use raywright_base::parallel;
 use raywright_base::sampling::{BatchSize, SamplerKind};
 use raywright_base::workers::watched;
-use raywright_integrators::{Guide, Integrator, Path, is_matt};
+use raywright_integrators::{Guide, Guiding, Integrator, Path, is_matt};
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene, SurfaceInteraction};
 
@@ -28,9 +28,9 @@ pub const PILOT: u32 = PARTS * SIDE * SIDE * SAMPLES;
 /// Approximate relMSE of each variant with 8 samples per pixel, estimated on a few parts of the picture.
 ///
 /// All variants are measured on the same pixels, relative to the same picture: the mean over all variants. Paths
-/// without guiding rarely find the caustics that [`Path::caustics`] handles, and most likely not in so few samples. So
-/// photons estimate the error of such paths ([`raywright_integrators::LocalGuide::rarity`]), which is added to unguided
-/// variants.
+/// without guiding rarely find the light that [`Path::guiding`] handles, and most likely not in so few samples. So the
+/// guide estimates the error of such paths ([`raywright_integrators::LocalGuide::rarity`]), which is added to unguided
+/// variants. Light that is learned is found once for all paths that share it.
 ///
 /// The result depends only on the scene, the camera and the filter, not on seeds, time or threads. Other `settings` are
 /// ignored.
@@ -45,9 +45,10 @@ pub fn pilot(
     let settings = Settings { sampler, seed: 0, ..settings.clone() };
     let stop = Stop::default();
     let work = || {
-        let guide = if ways.iter().any(|way| way.caustics) { Guide::of(scene, &stop.cancel) } else { None };
+        let guiding = ways.iter().map(|way| way.guiding_in(scene)).max().unwrap_or_default();
+        let guide = guiding.guide(scene, camera, &stop.cancel);
         let seen = parallel::map(ways.len(), |i| expose(scene, camera, &ways[i], &settings, &stop));
-        PilotMoments { ways: seen, rare: guide.map(|guide| rarity(scene, camera, &guide)) }
+        PilotMoments { ways: seen, guiding, rare: guide.map(|guide| rarity(scene, camera, &guide)) }
     };
     let mut ended = false;
     let watch = || {
@@ -68,7 +69,9 @@ pub fn pilot(
 struct PilotMoments {
     /// Tiles of each variant.
     ways: Vec<Vec<FilmTile>>,
-    /// Rarity of caustics per pixel, if any variant uses guiding.
+    /// The most of their guiding.
+    guiding: Guiding,
+    /// Rarity of the light that it guides to, per pixel, if there is any.
     rare: Option<Vec<Vec<f64>>>,
 }
 
@@ -89,8 +92,9 @@ impl PilotMoments {
                 count += 3.0;
                 for (sum, (way, tile)) in sums.iter_mut().zip(ways.iter().zip(tiles())) {
                     *sum += variance(tile, pixel).dot(over);
-                    if let Some(rare) = self.rare.as_ref().filter(|_| !way.caustics) {
-                        *sum += squared.dot(over) * rare[part][pixel] / f64::from(SAMPLES);
+                    if let Some(rare) = self.rare.as_ref().filter(|_| way.guiding == Guiding::None) {
+                        let paths = if self.guiding == Guiding::Learned { way.reuse * way.reuse } else { 1 };
+                        *sum += squared.dot(over) * rare[part][pixel] / f64::from(SAMPLES * paths);
                     }
                 }
             }

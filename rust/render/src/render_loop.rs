@@ -181,7 +181,7 @@ fn pass(
 mod tests {
     use super::super::{HistoryRow, Quiet, Until};
     use super::*;
-    use raywright_integrators::{CameraSample, Path, Worker};
+    use raywright_integrators::{CameraSample, Guiding, Path, Worker};
     use raywright_optics::Rgb;
     use raywright_scene::fixtures::{cornell, furnace};
     use std::ops::ControlFlow;
@@ -260,7 +260,7 @@ mod tests {
 
     impl Integrator for Here {
         fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-            static PATH: Path = Path { max_depth: None, roulette_depth: 4, reuse: 1, caustics: false };
+            static PATH: Path = Path { max_depth: None, roulette_depth: 4, reuse: 1, guiding: Guiding::None };
             Box::new(HereSession(self, PATH.begin(job, cancel)))
         }
         fn runs_on_caller(&self) -> bool {
@@ -292,7 +292,7 @@ mod tests {
 
     impl Integrator for Noting {
         fn begin<'a>(&'a self, job: Job<'a>, cancel: &Cancel) -> Box<dyn Session + 'a> {
-            static PATH: Path = Path { max_depth: Some(1), roulette_depth: 4, reuse: 1, caustics: false };
+            static PATH: Path = Path { max_depth: Some(1), roulette_depth: 4, reuse: 1, guiding: Guiding::None };
             Box::new(NotingSession(self, PATH.begin(job, cancel)))
         }
     }

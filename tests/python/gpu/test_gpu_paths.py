@@ -19,7 +19,7 @@ from raywright.scenes.boxes import boxes
 # The software renderer gets one thread per test process.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 SIDE = 32
-PLAIN = rw.Path(reuse=1, caustics=False)
+PLAIN = rw.Path(reuse=1, guiding="none")
 CAMERA = rw.Camera((0, 1, 6), (0, 0, 0), width=SIDE, height=SIDE)
 
 
@@ -183,10 +183,10 @@ def test_filters_draw_samples(gpu, filter):
     """Of a tilted edge, which each filter blurs by another width."""
     scene = rw.Scene(quad((-2, -3, 0), (2.3, 1, 0), (-1, 6, 0), material=rw.Diffuse(0), emission=1.0))
     how = {"filter": filter, "progress": False}
-    there = rw.render(scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, device=gpu, **how)
+    there = rw.render(scene, CAMERA, rw.Path(0, reuse=1, guiding="none"), 400, device=gpu, **how)
     assert there.plan["device"].chosen == gpu.name
     here = rw.render(
-        scene, CAMERA, rw.Path(0, reuse=1, caustics=False), 400, sampler=rw.rendering.Independent(), **how
+        scene, CAMERA, rw.Path(0, reuse=1, guiding="none"), 400, sampler=rw.rendering.Independent(), **how
     )
     error = np.sqrt(there.standard_error.astype(float) ** 2 + here.standard_error.astype(float) ** 2) + 1e-3
     z = ((there.rgb - here.rgb) / error)[..., 0]
@@ -216,7 +216,7 @@ def test_copies_are_laid_out(gpu, monkeypatch):
 @pytest.mark.parametrize("depth", [0, 1, 2])
 def test_bounces_are_counted_alike(gpu, depth):
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
-    both(scene, gpu, camera, samples=16, path=rw.Path(max_depth=depth, reuse=1, caustics=False))
+    both(scene, gpu, camera, samples=16, path=rw.Path(max_depth=depth, reuse=1, guiding="none"))
 
 
 WHITE = {
@@ -291,7 +291,7 @@ def test_nothing_gets_in_between_faces(gpu):
     points = shell.vertices + 0.02 * np.sin(50 * shell.vertices[:, ::-1])
     scene = rw.Scene(rw.Mesh(points, shell.faces, material=shell.material), environment=1e6)
     camera = rw.Camera((0.1, 0.2, 0.3), (1, 0.2, 0.1), fov=120, width=SIDE, height=SIDE)
-    path = rw.Path(max_depth=6, reuse=1, caustics=False)
+    path = rw.Path(max_depth=6, reuse=1, guiding="none")
     image = rw.render(scene, camera, path, 32, progress=False, device=gpu)
     assert image.plan["device"].chosen == gpu.name
     assert not image.rgb.any()

@@ -8,7 +8,7 @@ import numpy as np
 import raywright as rw
 
 # Its relMSE is below 3e-6. The .rgb of
-# rw.render(*rw.scenes.cornell_box(width=48, height=48), rw.Path(reuse=4, caustics=False), samples=16384,
+# rw.render(*rw.scenes.cornell_box(width=48, height=48), rw.Path(reuse=4, guiding="none"), samples=16384,
 #           sampler=rw.rendering.Sobol(), seed=10**9)
 STORED = Path(__file__).parents[1] / "data" / "cornell_48.npz"
 

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from long_runs import error_of_part, part
 
 import raywright as rw
 
@@ -40,9 +41,10 @@ def seen(scene, camera, samples, integrator=None, seed=0):
     return values.mean(), values.std(ddof=1) / math.sqrt(values.size)
 
 
-def assert_seen(scene, camera, samples, expected, integrator=None, most=0.002):
+def assert_seen(scene, camera, samples, expected, integrator=None, most=0.002, share=1):
     """Within three standard errors, which chance exceeds once in 370, of at most 0.2 %; the seed is fixed."""
-    mean, error = seen(scene, camera, samples, integrator)
+    mean, error = seen(scene, camera, part(samples, share), integrator)
+    most = error_of_part(most, share)
     print(f"{mean:.6f} ± {error:.6f}, {expected:.6f}: {(mean - expected) / (error + 1e-300):+.2f}")
     # Pictures are float32.
     assert abs(mean - expected) <= 3 * error + 1e-6 * expected, (mean, error, expected)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from cornell_picture import cornell_picture
 from light_pictures import MATERIALS, SIDE, assert_same, ball, camera, lamp, square
+from long_runs import error_of_part, part
 
 import raywright as rw
 
@@ -46,7 +47,7 @@ def test_what_is_sharp_and_what_is_beside_it():
         rw.Sphere((-0.9, 0.3, 0.4), 0.4, material=rw.Mirror()),
         rw.Sphere((-0.2, -1.1, 0.3), 0.3, material=rw.Plastic((0.2, 0.4, 0.7))),
     ]
-    assert_same_picture(rw.Scene(shapes), camera(), paths=1024, path=rw.Path(reuse=1, caustics=False))
+    assert_same_picture(rw.Scene(shapes), camera(), paths=1024, path=rw.Path(reuse=1, guiding="none"))
 
 
 def test_bumps_textures_masks_and_sides():
@@ -226,7 +227,7 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
     scene = rw.Scene([first, second])
     # By photons, to each depth: a share of the light that arrives at a wall after that many bounces is
     # reflected. The small hole needs twice as many, or too few pass it.
-    depths, runs, count = 6, 12, 200_000 if aperture > 0.1 else 400_000
+    depths, runs, count = 6, 12, part(200_000 if aperture > 0.1 else 400_000, 4)
     arrived = np.zeros((runs, 2, depths + 1))
     for seed in range(runs):
         found = scene.photons(count, seed=seed)
@@ -241,7 +242,7 @@ def test_chambers_that_light_each_other_through_a_hole(aperture, rho, expected, 
     sent = arrived * np.array(rho)[:, None]
     mean, error = sent.mean(0), sent.std(0, ddof=1) / math.sqrt(runs)
     whole, doubt = sent.sum(2).mean(0), sent.sum(2).std(0, ddof=1) / math.sqrt(runs)
-    assert (doubt < most * whole).all(), doubt / whole
+    assert (doubt < error_of_part(most, 4) * whole).all(), doubt / whole
     # Within three standard errors; seeds are fixed. Walls of straight pieces are off by less than a
     # thousandth, and so is the hole between them.
     off = np.abs(whole - (np.array(expected) - [1, 0]))

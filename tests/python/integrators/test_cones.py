@@ -166,7 +166,7 @@ def test_rough_metal_shows_an_edge_as_blurred_as_rays_do():
     cones = (
         look(rw.Scene([plate, lit]), camera, rw.integrators.ConeTraced(ambient=1.0)).rgb[..., 1].astype(float)
     )
-    rays = look(rw.Scene([plate, wall]), camera, rw.Path(max_depth=1, caustics=False), samples=2048).rgb[
+    rays = look(rw.Scene([plate, wall]), camera, rw.Path(max_depth=1, guiding="none"), samples=2048).rgb[
         ..., 1
     ]
     cones, rays = cones.mean(axis=0), rays.mean(axis=0)

@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from long_runs import part
 from rare_scenes import keyhole
 
 import raywright as rw
@@ -91,10 +92,10 @@ SCENES = {
 
 # Each with enough samples for a reliable error: few samples of light that arrives at the lens are bright.
 WAYS = {
-    "path": (rw.Path(reuse=1, caustics=False), 256),
-    "light traced": (rw.LightTraced(), 1024),
-    "bidirectional": (rw.Bidirectional(), 256),
-    "progressive": (rw.ProgressivePhotonMap(), 256),
+    "path": (rw.Path(reuse=1, guiding="none"), part(256, 4)),
+    "light traced": (rw.LightTraced(), part(1024, 4)),
+    "bidirectional": (rw.Bidirectional(), part(256, 4)),
+    "progressive": (rw.ProgressivePhotonMap(), part(256, 4)),
 }
 
 # Equal error bars are exceeded once in 180 blocks, and those of blocks with few bright samples more often: 5

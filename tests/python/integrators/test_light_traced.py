@@ -76,8 +76,8 @@ def test_a_caustic_is_found_with_less_noise():
         ]
     )
     below = rw.Camera((1.5, -1.5, 0.5), (0, 0, 0), up=(0, 0, 1), fov=20, width=SIDE, height=SIDE)
-    ours, _ = assert_same_picture(scene, below, paths=1024, path=rw.Path(reuse=1, caustics=True))
-    plain = rw.render(scene, below, rw.Path(reuse=1, caustics=False), 256, progress=False)
+    ours, _ = assert_same_picture(scene, below, paths=1024, path=rw.Path(reuse=1, guiding="photons"))
+    plain = rw.render(scene, below, rw.Path(reuse=1, guiding="none"), 256, progress=False)
     # With other paths than ours, and an eighth of their variance.
     truth = rw.render(scene, below, rw.LightTraced(), 2048, seed=1, progress=False).rgb.astype(float)
     off = [float(np.mean((image.rgb - truth) ** 2 / (truth**2 + 0.01))) for image in (ours, plain)]

@@ -63,7 +63,7 @@ def test_radii_of_nothing_are_connections_alone():
 @pytest.mark.parametrize("depth", [2, None])
 def test_a_room_is_that_of_paths(depth):
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
-    truth = picture(scene, camera, rw.Path(depth, reuse=1, caustics=False), 1024)
+    truth = picture(scene, camera, rw.Path(depth, reuse=1, guiding="none"), 1024)
     error = np.sqrt(blocks(truth.standard_error.astype(float) ** 2) / 16)
     ours = seeds(
         scene, camera, rw.Bidirectional(depth, vertex_merging=True, radius=25.0, photons=2000), 16, 6

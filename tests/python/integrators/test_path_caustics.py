@@ -8,11 +8,11 @@ import pytest
 import raywright as rw
 
 
-def render(scene, camera, caustics, **how):
+def render(scene, camera, guiding, **how):
     how = {"samples": 16} | how
     depth = how.pop("max_depth", None)
     reuse = how.pop("reuse", 1)
-    path = rw.Path(max_depth=depth, reuse=reuse, caustics=caustics)
+    path = rw.Path(max_depth=depth, reuse=reuse, guiding=guiding)
     return rw.render(scene, camera, path, progress=False, **how)
 
 
@@ -68,7 +68,7 @@ def truth():
 @pytest.mark.parametrize("shift", [0.0, SHIFT])
 def test_light_from_a_mirror_is_that_of_the_image(scale, shift):
     scene, camera = mirrored(scale, shift)
-    image = render(scene, camera, True, samples=16384, max_depth=2, seed=3)
+    image = render(scene, camera, "photons", samples=16384, max_depth=2, seed=3)
     mean, error = image.rgb.mean(dtype=float), np.sqrt(np.mean(image.standard_error.astype(float) ** 2) / 16)
     # Four standard errors, which are below one part in a hundred; the spot is a thousandth wide.
     assert abs(mean - truth()) <= 4 * error + 1e-3 * truth()
@@ -78,8 +78,8 @@ def test_light_from_a_mirror_is_that_of_the_image(scale, shift):
 def test_most_paths_find_it():
     scene, camera = mirrored(1.0)
     free, aimed = (
-        render(scene, camera, caustics, samples=4096, max_depth=2).standard_error
-        for caustics in (False, True)
+        render(scene, camera, guiding, samples=4096, max_depth=2).standard_error
+        for guiding in ("none", "photons")
     )
     # The image fills one part in some five thousand of the floor's hemisphere, and most aimed paths hit it.
     assert np.mean(np.square(aimed)) < 0.01 * np.mean(np.square(free))
@@ -141,7 +141,7 @@ SCENES = {
 
 
 # Mean of red, green and blue without caustics, and its standard error, from
-# [render(scene, camera, False, seed=1000 + s, samples=128, sampler=rw.rendering.Sobol()) for s in
+# [render(scene, camera, "none", seed=1000 + s, samples=128, sampler=rw.rendering.Sobol()) for s in
 # range(200)], of the glass in glass and the bulb for s in range(300).
 FREE = {
     "glass": ((0.510533, 0.237978, 0.110439), (0.000302, 0.000176, 0.000123)),
@@ -161,7 +161,7 @@ def test_the_mean_is_what_it_is_without(name):
     scene, camera = SCENES[name]()
     free, error_of_free = np.array(FREE[name])
     how = {"samples": 32, "sampler": rw.rendering.Sobol(), "threads": 1}
-    few = np.array([render(scene, camera, True, seed=s, **how).rgb.mean(axis=(0, 1)) for s in range(40)])
+    few = np.array([render(scene, camera, "photons", seed=s, **how).rgb.mean(axis=(0, 1)) for s in range(40)])
     error = np.hypot(few.std(axis=0, ddof=1) / np.sqrt(40), error_of_free)
     # By Student's t of 39 degrees, one of the 27 such numbers of all scenes is off by more once in 640 tries.
     assert (np.abs(few.mean(axis=0) - free) <= 4.5 * error).all()
@@ -177,7 +177,7 @@ def test_a_furnace_stays_one():
     ]
     camera = rw.Camera((0, 1.5, 4), (0, -0.2, 0), fov=50, width=16, height=16)
     scene = rw.Scene([floor, *balls], environment=1.0)
-    image = render(scene, camera, True, samples=256)
+    image = render(scene, camera, "photons", samples=256)
     error = np.sqrt(np.mean(image.standard_error.astype(float) ** 2) / image.rgb.size * 3)
     assert abs(image.rgb.mean(dtype=float) - 1) <= 4 * error + 1e-6
     assert error < 0.005
@@ -197,43 +197,46 @@ def same_scenes():
 @pytest.mark.parametrize("how", [{}, {"adaptive": True}, {"sampler": rw.rendering.Sobol()}, {"reuse": 4}])
 def test_threads_pieces_and_checkpoints_change_no_bit(how, same_scenes, tmp_path):
     alone, together, elsewhere = same_scenes
-    one = render(*alone, True, samples=48, threads=1, **how)
+    one = render(*alone, "photons", samples=48, threads=1, **how)
     assert one.error.estimate > 0
-    assert_same(render(*together, True, samples=48, threads=3, **how), one)
+    assert_same(render(*together, "photons", samples=48, threads=3, **how), one)
     with ThreadPoolExecutor(2) as executor:
-        assert_same(render(*elsewhere, True, samples=48, executor=executor, **how), one)
+        assert_same(render(*elsewhere, "photons", samples=48, executor=executor, **how), one)
     # Batches depend on the number of samples, which differs here.
     how = how | {"sampler": one.plan.sampler, "checkpoint": tmp_path / "a"}
-    render(*alone, True, samples=16, **how)
-    assert_same(render(*together, True, samples=48, **how), one)
+    render(*alone, "photons", samples=16, **how)
+    assert_same(render(*together, "photons", samples=48, **how), one)
 
 
 def test_where_nothing_can_be_found_it_changes_no_bit():
     plain = rw.scenes.cornell_box(width=16, height=16)
-    assert_same(render(*plain, True), render(*plain, False))
+    assert_same(render(*plain, "photons"), render(*plain, "none"))
     # No ray hits lights with a delta distribution, and with one bounce no path reaches the lamp by a mirror.
     ball = rw.Sphere((0, -0.5, 0), 0.4, material=rw.Mirror())
     walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.5))
     point = rw.Scene([walls, ball], lights=rw.PointLight((0, 0.9, 0), 3.0))
     camera = rw.Camera((0, 0, 0.98), (0, -0.2, 0), fov=90, width=12, height=12)
-    assert_same(render(point, camera, True), render(point, camera, False))
+    assert_same(render(point, camera, "photons"), render(point, camera, "none"))
     glass = SCENES["glass"]()
-    assert_same(render(*glass, True, max_depth=1), render(*glass, False, max_depth=1))
+    assert_same(render(*glass, "photons", max_depth=1), render(*glass, "none", max_depth=1))
     dark = rw.Scene([walls, ball])
-    assert not render(dark, camera, True).rgb.any()
+    assert not render(dark, camera, "photons").rgb.any()
 
 
 def test_fireflies_are_found_by_most_paths():
     scene, camera = rw.scenes.glass_spheres(width=32, height=32)
     free, aimed = (
-        np.array([render(scene, camera, caustics, samples=64, seed=s).rgb for s in range(4)], float)
-        for caustics in (False, True)
+        np.array([render(scene, camera, guiding, samples=64, seed=s).rgb for s in range(4)], float)
+        for guiding in ("none", "photons")
     )
     mean = np.square(aimed.mean(axis=0)) + 0.01
     # Seventeen to thirty-six times less in four such sets of seeds.
     assert np.mean(aimed.var(axis=0, ddof=1) / mean) < 0.2 * np.mean(free.var(axis=0, ddof=1) / mean)
 
 
-def test_what_is_neither_true_nor_false_is_refused():
-    with pytest.raises(TypeError, match="caustics must be True, False or None, got 1"):
-        rw.Path(caustics=1)
+@pytest.mark.parametrize("guiding", ["paths", "", True, 1])
+def test_other_guiding_is_refused(guiding):
+    with pytest.raises(
+        ValueError, match=f"guiding must be one of 'none', 'photons', 'learned', got {guiding!r}"
+    ):
+        rw.Path(guiding=guiding)

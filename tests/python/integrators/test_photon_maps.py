@@ -33,7 +33,7 @@ WAYS = {
 @cache
 def room(max_depth):
     scene, camera = rw.scenes.cornell_box(width=SIDE, height=SIDE)
-    return scene, camera, picture(scene, camera, rw.Path(max_depth, reuse=1, caustics=False), 512)
+    return scene, camera, picture(scene, camera, rw.Path(max_depth, reuse=1, guiding="none"), 512)
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -223,7 +223,7 @@ def test_a_lamp_and_an_eye_both_behind_glass():
     look = rw.Camera((0, -3.5, 1.2), (0, 0, 0.1), up=(0, 0, 1), fov=25, width=SIDE, height=SIDE)
     # Paths find a lamp of this size by chance, if there are many.
     scene = rw.Scene([*shapes, lamp])
-    truth = picture(scene, look, rw.Path(reuse=1, caustics=True), 1024)
+    truth = picture(scene, look, rw.Path(reuse=1, guiding="photons"), 1024)
     # Light held by total reflection would need thousands of bounces.
     assert_agree(scene, look, rw.PhotonMap(8000, final_gather=0, max_depth=40), truth, blur=0.06)
     # They cannot reach a point light in glass; photons see the same as before.
@@ -280,7 +280,7 @@ def test_gold_at_both_ends_gives_no_more_than_there_is(way):
     scene = rw.Scene([floor, gold, lamp])
     look = rw.Camera((0, -1, 1), (3.0, 0, 0), up=(0, 0, 1), fov=8, width=8, height=8)
     tints = []
-    for one, samples in ((way, 32), (rw.Path(reuse=1, caustics=False), 1024)):
+    for one, samples in ((way, 32), (rw.Path(reuse=1, guiding="none"), 1024)):
         red, green, blue = picture(scene, look, one, samples).rgb.astype(float).mean((0, 1))
         assert red > 1.5 * blue > 0
         tints.append(red / green)

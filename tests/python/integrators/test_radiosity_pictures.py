@@ -21,7 +21,7 @@ def box() -> tuple[rw.Scene, rw.Camera, rw.Radiosity]:
 def test_the_cornell_box_looks_as_paths_have_it(box: tuple[rw.Scene, rw.Camera, rw.Radiosity]) -> None:
     scene, camera, shown = box
     ours = rw.render(scene, camera, shown, 16, progress=False).rgb
-    paths = rw.render(scene, camera, rw.Path(reuse=1, caustics=False), 128, progress=False).rgb
+    paths = rw.render(scene, camera, rw.Path(reuse=1, guiding="none"), 128, progress=False).rgb
     # Pixels that contain any part of the lamp are left out.
     lamp = paths.max(axis=2) > 0.4
     # Patches of a fifth of the room's width keep the mean of a picture to 2 %, and blocks of 8 by 8 pixels to

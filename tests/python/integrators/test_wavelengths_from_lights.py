@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from long_runs import error_of_part, part
 
 import raywright as rw
 
@@ -135,7 +136,7 @@ def test_light_from_lamps_is_that_of_paths(name, way):
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("name", [*SURE, "a ball", "a rough ball"])
 def test_light_from_lamps_is_that_of_paths_to_two_in_a_thousand(name, way):
-    assert_agree(name, way, 0.002, 7.0 if name in SURE else 60.0)
+    assert_agree(name, way, error_of_part(0.002, 4), part(8.0 if name in SURE else 60.0, 4))
 
 
 def lantern():

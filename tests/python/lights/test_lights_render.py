@@ -212,7 +212,7 @@ def test_what_shines_inwards_is_dark_from_outside():
         assert lit.rgb[8, 8] == pytest.approx(1.0, abs=5 * float(lit.standard_error[8, 8].max()))
 
 
-@pytest.mark.parametrize("integrator", [rw.Path(), rw.Path(reuse=2), rw.Path(caustics=True)], ids=repr)
+@pytest.mark.parametrize("integrator", [rw.Path(), rw.Path(reuse=2), rw.Path(guiding="photons")], ids=repr)
 def test_a_ball_in_what_shines_inwards_and_reflects(integrator):
     # All is L / (1 - albedo), also the ball, which emits and reflects like the shell.
     shell = rw.Sphere((0, 0, 0), 3, material=rw.Diffuse(0.5), emission=rw.Emission(1, side="back"))

@@ -1,7 +1,7 @@
 """How scenes with media look by paths: what the tests of photons and of paths from both ends compare with.
 
 ``PYTHONPATH=tests/python/helpers python tests/python/media/media_references.py --write`` renders them by
-``rw.Path(caustics=False)``, seed 10**9,
+``rw.Path(guiding="none")``, seed 10**9,
 and writes means and standard errors of blocks of pixels to ``data/media_blocks.npz``. Names after it are
 those of the scenes to render; the others stay as they are.
 """
@@ -45,7 +45,7 @@ def write(names):
     for name, (scene, camera, depth, samples, block) in scenes().items():
         if names and name not in names:
             continue
-        path = rw.Path(depth, caustics=False)
+        path = rw.Path(depth, guiding="none")
         image = rw.render(scene, camera, path, samples, seed=10**9, progress=False)
         many = camera.width // block
 

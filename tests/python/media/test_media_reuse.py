@@ -12,7 +12,7 @@ LAMP = rw.Sphere((1.5, 2.5, 1), 0.5, material=rw.Diffuse(0), emission=9.0)
 
 
 def render(scene, reuse, samples, seed=0, depth=None, roulette=4, camera=CAMERA, **how):
-    path = rw.Path(depth, roulette, reuse=reuse, caustics=False)
+    path = rw.Path(depth, roulette, reuse=reuse, guiding="none")
     return rw.render(scene, camera, path, samples, seed=seed, progress=False, **how)
 
 

@@ -11,7 +11,7 @@ import pytest
 import raywright as rw
 
 # Explicit options, so that the render begins at once.
-PLAIN = rw.Path(reuse=1, caustics=False)
+PLAIN = rw.Path(reuse=1, guiding="none")
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ handler = lambda *_: print("heard", flush=True) or os._exit(7)
 if sys.argv[2] == "handled":
     signal.signal(signal.SIGTERM, handler)
 box = rw.scenes.cornell_box(width=40, height=30)
-path = rw.Path(reuse=1, caustics=False)
+path = rw.Path(reuse=1, guiding="none")
 chance = rw.rendering.Independent()
 rw.render(*box, path, samples=10**8, sampler=chance, progress=press, checkpoint=sys.argv[1])
 """

@@ -28,7 +28,7 @@ for sampler in (kinds.Independent(), *batched):
 tell("reuse", *cornell, rw.Path(reuse=4))
 tell("plates", *rw.scenes.veach_plates(**size))
 tell("spheres", *rw.scenes.glass_spheres(**size))
-tell("caustics", *rw.scenes.glass_spheres(**size), rw.Path(caustics=True))
+tell("caustics", *rw.scenes.glass_spheres(**size), rw.Path(guiding="photons"))
 tell("whitted", *rw.scenes.glass_spheres(**size), rw.Whitted())
 tell("distributed", *rw.scenes.veach_plates(**size), rw.integrators.Distributed(splits=3))
 
@@ -48,7 +48,7 @@ glossy = rw.Plastic(blue), rw.Plastic(blue, roughness=0.5), rw.MetallicRough(blu
 kinds = *glossy, gold, rw.Mirror(0.9), rw.ThinDielectric(1.5), rw.Dielectric(1.5)
 balls = [rw.Sphere((x - 3, -1, 0), 0.45, material=kind) for x, kind in enumerate(kinds)]
 tell("kinds", rw.Scene([floor, lamp, *balls]), camera)
-tell("guided", rw.Scene([floor, lamp, *balls]), camera, rw.Path(caustics=True))
+tell("guided", rw.Scene([floor, lamp, *balls]), camera, rw.Path(guiding="photons"))
 
 mixed = rw.Mix(rw.Mix(rw.Diffuse(blue), gold, 0.3), rw.Dielectric(1.5, roughness=0.4), 0.5)
 principled = rw.Principled(blue, metallic=0.2, transmission=0.3, clearcoat=0.8, sheen=0.5)

@@ -29,7 +29,7 @@ def test_samples_are_placed_where_nothing_is_named(box):
     assert image.samples == 64
     assert isinstance(image.plan.sampler, rw.rendering.Lattice)
     assert np.array_equal(image.rgb, render(box, samples=64, sampler=image.plan.sampler).rgb)
-    assert [row.what for row in image.plan.rows] == ["sampler", "batch", "reuse", "caustics"]
+    assert [row.what for row in image.plan.rows] == ["sampler", "batch", "reuse", "guiding"]
     assert image.plan["sampler"].chosen == "Lattice"
     assert int(image.plan["batch"].chosen) == image.plan.sampler.batch
     assert all(row.why for row in image.plan.rows)
@@ -54,7 +54,7 @@ def test_lattices_unless_of_few_points(box, limits, adaptive):
 
 
 def test_what_is_named_is_used_as_named(box):
-    path = rw.Path(reuse=2, caustics=False)
+    path = rw.Path(reuse=2, guiding="none")
     for sampler in (
         rw.rendering.Independent(),
         rw.rendering.Halton(8),
@@ -117,7 +117,9 @@ def test_shots_and_views_leave_it_to_render(box):
 
 # Enough samples for a pilot.
 SIDE, SAMPLES = 128, 64
-WAYS = [rw.Path(reuse=reuse, caustics=caustics) for reuse in (1, 4) for caustics in (False, True)]
+WAYS = [
+    rw.Path(reuse=reuse, guiding=guiding) for reuse in (1, 4) for guiding in ("none", "photons", "learned")
+]
 
 
 def made(name, side=SIDE):
@@ -139,20 +141,20 @@ def eager(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("name", "reuse", "caustics", "why"),
+    ("name", "reuse", "guiding", "why"),
     [
-        ("cornell_box", 8, False, ("error times time is 0.", "no light comes by way of mirrors or glass")),
-        ("veach_plates", 1, False, ("error times time is ", "error times time is ")),
-        ("glass_spheres", 1, True, ("error times time is ", "error times time is 0.")),
+        ("cornell_box", 8, "none", ("error times time is 0.", "no light comes by way of mirrors or glass")),
+        ("veach_plates", 1, "none", ("error times time is ", "error times time is ")),
+        ("glass_spheres", 1, "photons", ("error times time is ", "error times time is 0.")),
     ],
 )
-def test_paths_go_as_a_pilot_finds(name, reuse, caustics, why):
+def test_paths_go_as_a_pilot_finds(name, reuse, guiding, why):
     scene, camera = made(name)
     plan = chosen(scene, camera)
-    assert plan.path == rw.Path(reuse=reuse, caustics=caustics)
-    assert (plan["reuse"].chosen, plan["caustics"].chosen) == (str(reuse), str(caustics))
+    assert plan.path == rw.Path(reuse=reuse, guiding=guiding)
+    assert (plan["reuse"].chosen, plan["guiding"].chosen) == (str(reuse), guiding)
     assert why[0] in plan["reuse"].why
-    assert why[1] in plan["caustics"].why
+    assert why[1] in plan["guiding"].why
     # Neither the seed nor the number of threads matters.
     assert chosen(scene, camera, seed=5, threads=3) == plan
 
@@ -165,16 +167,18 @@ def test_what_a_pilot_finds_is_the_same_picture_when_it_is_named(eager, name, pl
     image = rw.render(scene, camera, samples=16, progress=False)
     path = image.plan.path
     assert "by a pilot" in image.plan["reuse"].why
-    assert (path == rw.Path(reuse=1, caustics=False)) is plain
+    assert (path == rw.Path(reuse=1, guiding="none")) is plain
     again = rw.render(scene, camera, path, samples=16, threads=3, progress=False)
     assert np.array_equal(again.rgb, image.rgb)
 
 
-def test_larger_patches_are_tried_where_light_is_rare():
+def test_sharing_and_a_learned_guide_are_chosen_where_light_is_rare():
     scene, camera = rare_scenes.keyhole(SIDE)
     plan = chosen(scene, camera)
-    assert plan.path == rw.Path(reuse=8, caustics=False)
+    assert plan.path.reuse > 1
+    assert plan.path.guiding == "learned"
     assert "error times time is 0." in plan["reuse"].why
+    assert "error times time is 0." in plan["guiding"].why
     # Named options apply as named.
     named = chosen(scene, camera, rw.Path(reuse=4))
     assert named.path.reuse == 4
@@ -193,7 +197,7 @@ def test_a_pilot_says_the_same_on_any_number_of_threads():
 def test_a_pilot_tells_the_error_of_the_picture():
     # Two parts make the whole.
     box = rw.scenes.cornell_box(width=32, height=16)
-    for path in (rw.Path(reuse=1, caustics=False), rw.Path(reuse=4, caustics=False)):
+    for path in (rw.Path(reuse=1, guiding="none"), rw.Path(reuse=4, guiding="none")):
         # Its own error is less than an eightieth of that of 8 samples.
         truth = render(box, integrator=path, samples=1024).rgb.astype(float)
         pictures = [
@@ -214,17 +218,17 @@ def test_pilots_stay_where_there_is_nothing_to_choose():
         (rw.Path(reuse=1), "as named"),
     ):
         plan = chosen(scene, camera, path)
-        assert plan.path == replace(path, reuse=1, caustics=False)
+        assert plan.path == replace(path, reuse=1, guiding="none")
         assert plan["reuse"].why == why
-        assert plan["caustics"].why == "no light comes by way of mirrors or glass"
+        assert plan["guiding"].why == "no light comes by way of mirrors or glass"
     for limits in (
         {"samples": SAMPLES - 1},
         {"seconds": 1e-3, "samples": None},
         {"error": 10.0, "samples": None},
     ):
         plan = chosen(scene, camera, **limits)
-        assert plan.path == rw.Path(reuse=1, caustics=False)
-        assert {plan[what].why for what in ("reuse", "caustics")} == {
+        assert plan.path == rw.Path(reuse=1, guiding="none")
+        assert {plan[what].why for what in ("reuse", "guiding")} == {
             "the picture has too few samples to send a pilot"
         }
 
@@ -243,7 +247,7 @@ def test_checkpoints_keep_what_was_chosen(box, tmp_path, eager):
     # Too few for a pilot, had there been none.
     on = rw.render(scene, camera, samples=1, checkpoint=tmp_path / "large", progress=False)
     assert on.plan.path == begun.plan.path
-    assert {on.plan[what].why for what in ("reuse", "caustics")} == {"as the checkpoint has it"}
+    assert {on.plan[what].why for what in ("reuse", "guiding")} == {"as the checkpoint has it"}
     assert np.array_equal(on.rgb, begun.rgb)
     with pytest.raises(ValueError, match="another integrator, reuse 4 instead of 8"):
         render((scene, camera), integrator=rw.Path(reuse=8), checkpoint=tmp_path / "large")
@@ -288,7 +292,7 @@ def test_so_are_photons():
     with pytest.raises(StoppedError):
         _core.chances(compiled, rw.Path(), 1, look)
     # A pilot that was stopped counts as no result.
-    assert _core.chances(compiled, rw.Path(), None, None) == (True, True)
+    assert _core.chances(compiled, rw.Path(), None, None) == (True, True, True)
 
 
 def test_a_pilot_is_part_of_the_time():
@@ -297,6 +301,6 @@ def test_a_pilot_is_part_of_the_time():
     began = time.perf_counter()
     image = rw.render(scene, camera, seconds=1.5, progress=False)
     took = time.perf_counter() - began
-    assert "by a pilot" in image.plan["caustics"].why
+    assert "by a pilot" in image.plan["guiding"].why
     assert abs(image.seconds - took) < 0.3
     assert took < 3

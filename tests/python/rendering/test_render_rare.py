@@ -95,7 +95,7 @@ def test_caustics_are_not_told_to_be_better_than_they_are():
 
 def test_light_through_a_keyhole_is_known_to_be_rare():
     scene, camera = rare_scenes.keyhole(16)
-    # By rw.Path(reuse=8, caustics=False), 32,768 samples of rw.rendering.Lattice(64), seed 10**9.
+    # By rw.Path(reuse=8, guiding="none"), 32,768 samples of rw.rendering.Lattice(64), seed 10**9.
     with np.load(Path(__file__).parents[1] / "data" / "keyhole_16.npz") as kept:
         reference = kept["rgb"].astype(float)
     honest, cannot, _ = judged(scene, camera, (16, 64), 20, reference)

@@ -118,7 +118,7 @@ WAYS = [
     rw.Direct(),
     rw.Path(max_depth=2),
     rw.Path(max_depth=2, reuse=4),
-    rw.Path(max_depth=2, caustics=True),
+    rw.Path(max_depth=2, guiding="photons"),
     rw.Bidirectional(max_depth=2),
 ]
 

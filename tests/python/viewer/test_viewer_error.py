@@ -79,7 +79,7 @@ class Brought:
         how = {"samples": self.samples, "device": self, "progress": False}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return rw.render(scene, camera, rw.Path(reuse=1, caustics=False), **how).error
+            return rw.render(scene, camera, rw.Path(reuse=1, guiding="none"), **how).error
 
 
 def glass():

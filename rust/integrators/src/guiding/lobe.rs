@@ -44,6 +44,12 @@ impl Lobe {
         Self { square: (radius * radius).max(least), ..lobe }
     }
 
+    /// Return a sphere that is the same from everywhere, for viewers around a place.
+    pub fn still(place: DVec3, target: DVec3, radius: f64) -> Self {
+        let least = (1e-10 * target.distance_squared(place)).max(f64::MIN_POSITIVE);
+        Self { place, target, moves: DMat3::ZERO, square: (radius * radius).max(least), share: 1.0 }
+    }
+
     /// Set the sampling probability.
     pub fn drawn(self, share: f64) -> Self {
         Self { share, ..self }

@@ -1,22 +1,49 @@
-//! Path guiding toward light through mirrors and glass.
+//! Path guiding toward light through mirrors and glass, and toward light that paths from the camera have found.
 
 mod cells;
 mod lobe;
 mod local_guide;
 mod photon;
 mod photon_tracing;
+mod portals;
 #[cfg(test)]
 mod tests;
+mod training;
 
 pub use local_guide::LocalGuide;
 
 use cells::Cells;
 use photon::Photon;
 use raywright_base::math::DVec3;
+use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Bsdf;
-use raywright_scene::Scene;
-use std::sync::Arc;
+use raywright_scene::{Camera, Scene};
+use std::sync::{Arc, Mutex, PoisonError};
+use training::Visit;
+
+/// Guiding of paths at matte surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Guiding {
+    /// None.
+    #[default]
+    None,
+    /// By photons ([`Guide::of`]).
+    Photons,
+    /// By paths from the camera ([`Guide::learned`]).
+    Learned,
+}
+
+impl Guiding {
+    /// Return the guide; `None` without one, or after a cancellation.
+    pub fn guide(self, scene: &Scene, camera: &dyn Camera, cancel: &Cancel) -> Option<Arc<Guide>> {
+        match self {
+            Self::None => None,
+            Self::Photons => Guide::of(scene, cancel),
+            Self::Learned => Guide::learned(scene, camera, cancel),
+        }
+    }
+}
 
 /// Path guiding toward the light that reaches a scene's surfaces through mirrors and glass, in the directions of
 /// photons (Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
@@ -29,7 +56,8 @@ use std::sync::Arc;
 /// to these spheres or its BSDF, and is weighted by the density of the mixture (`local_guide.rs`). So missing or
 /// inaccurate photons add noise but no bias, and no part of the guide has to be exact.
 ///
-/// It depends on the scene alone, neither on the camera nor on the number of threads.
+/// It depends on the scene alone, neither on the camera nor on the number of threads. [`Guide::learned`] makes another
+/// from paths from the camera (`training.rs`), which also aims at small openings (`portals.rs`).
 #[derive(Debug)]
 pub struct Guide {
     cells: Cells,
@@ -42,20 +70,66 @@ impl Guide {
         let sent = || {
             let photons = photon_tracing::photons(scene, cancel)?;
             let usual = photon_tracing::usual(scene, &photons);
-            Some(Self::new(photons, usual).map(Arc::new))
+            Some(Self::of_photons(photons, usual).map(Arc::new))
         };
         scene.kept(sent).and_then(|guide| (*guide).clone())
     }
 
     /// Make the guide from photons and the mean direct irradiance at them; `None` without photons.
-    fn new(photons: Vec<Photon>, usual: f64) -> Option<Self> {
-        (!photons.is_empty()).then(|| Self { cells: Cells::new(photons, usual) })
+    fn of_photons(photons: Vec<Photon>, usual: f64) -> Option<Self> {
+        (!photons.is_empty()).then(|| Self { cells: Cells::of_photons(photons, usual) })
+    }
+
+    /// Make the guide from visits in a scene of some radius; `None` if none found indirect light.
+    fn of_visits(visits: Vec<Visit>, radius: f64) -> Option<Self> {
+        visits.iter().any(|visit| visit.photon.flux > 0.0).then(|| Self { cells: Cells::of_visits(visits, radius) })
+    }
+
+    /// Return the guide that learns from a camera's paths. The scene caches the latest. Return `None` if these find no
+    /// indirect light, or after a cancellation.
+    pub fn learned(scene: &Scene, camera: &dyn Camera, cancel: &Cancel) -> Option<Arc<Self>> {
+        let view = View::of(camera);
+        let kept = scene.kept(|| Some(Learned::default()))?;
+        let lock = || kept.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, guide)) = lock().as_ref().filter(|(known, _)| *known == view) {
+            return guide.clone();
+        }
+        // Trained outside the lock: a thread that waits for others may take up their tasks, and those may call this
+        // function.
+        let photons = if scene.plan().needs().scattering { Self::of(scene, cancel) } else { None };
+        let guide = training::train(scene, camera, photons.as_deref(), cancel).map(Arc::new);
+        if !cancel.is_raised() {
+            *lock() = Some((view, guide.clone()));
+        }
+        guide
     }
 
     /// Return the distribution of directions at a place; `None` far from any photon.
     #[inline]
     pub fn at(&self, place: DVec3) -> Option<LocalGuide<'_>> {
         self.cells.find(place).map(|cell| LocalGuide::new(cell, place))
+    }
+}
+
+/// The latest guide of [`Guide::learned`].
+#[derive(Default)]
+struct Learned(Mutex<Option<(View, Option<Arc<Guide>>)>>);
+
+/// Some rays of a camera, which tell it from others.
+#[derive(PartialEq)]
+struct View(Vec<[u64; 7]>);
+
+impl View {
+    fn of(camera: &dyn Camera) -> Self {
+        let size = [camera.width(), camera.height()].map(f64::from);
+        let ray = |number| {
+            let mut sampler = Sampler::new(0, number, 0);
+            let ([x, y], lens, time) = (sampler.two(0), sampler.two(1), sampler.one(2));
+            let ray = camera.ray([x * size[0], y * size[1]], lens, time).ray;
+            let ([a, b, c], [d, e, f]) = (ray.origin.to_array(), ray.direction.to_array());
+            [a, b, c, d, e, f, ray.time].map(f64::to_bits)
+        };
+        Self((0..16).map(ray).collect())
     }
 }
 

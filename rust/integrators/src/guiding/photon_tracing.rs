@@ -61,7 +61,7 @@ pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
 }
 
 /// Return radiance over density, averaged over the channels.
-fn strength(light: &LightSample) -> f64 {
+pub(super) fn strength(light: &LightSample) -> f64 {
     light.weight.mean()
 }
 

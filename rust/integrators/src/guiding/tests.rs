@@ -5,6 +5,8 @@ use super::cells::Cells;
 use super::lobe::Lobe;
 use super::photon::Photon;
 use super::photon_tracing::photons;
+use super::portals::Portals;
+use super::training::Visit;
 use raywright_base::math::DVec3;
 use raywright_base::sampling::{Sampler, warp};
 use raywright_base::simd::Level;
@@ -91,7 +93,7 @@ fn cells_are_found_and_their_densities_integrate_to_one() {
             Photon { chain: u64::from(number % 5), ..photon(DVec3::new(u * u, v, 0.0), DVec3::Z + far) }
         })
         .collect();
-    let guide = Guide { cells: Cells::new(photons.clone(), 1.0) };
+    let guide = Guide { cells: Cells::of_photons(photons.clone(), 1.0) };
     assert!(photons.iter().all(|photon| guide.at(photon.position).is_some()));
     assert!(guide.at(DVec3::new(0.5, 0.5, 3.0)).is_none());
     for place in [DVec3::new(0.1, 0.2, 0.0), DVec3::new(0.9, 0.6, 0.0)] {
@@ -180,11 +182,88 @@ fn light_is_the_rarer_the_smaller_what_it_comes_from() {
                 Photon { flux: 1.0 / 64.0, ..photon(DVec3::new(u, v, 0.0), ball) }
             })
             .collect();
-        Guide { cells: Cells::new(photons, 0.25) }.at(DVec3::new(0.5, 0.5, 0.0)).unwrap().rarity()
+        Guide { cells: Cells::of_photons(photons, 0.25) }.at(DVec3::new(0.5, 0.5, 0.0)).unwrap().rarity()
     };
     for radius in [0.5, 0.05, 0.005] {
         // Half of the light, squared, over the share of directions that the sphere fills.
         let told = from_ball(radius) / (0.25 * 4.0 / (radius * radius));
         assert!((0.3..3.0).contains(&told), "{radius}: {told}");
     }
+}
+
+/// A visit from a point of a cube by a segment through another point, to one of the wall x = 3.
+fn visit_through(number: u32, through: impl Fn(&mut Sampler) -> DVec3) -> Visit {
+    let mut sampler = Sampler::new(11, 0, number);
+    let ([y, z], x) = (sampler.two(0), sampler.one(1));
+    let position = DVec3::new(x, y, z) - 0.5;
+    let way = through(&mut sampler) - position;
+    Visit { photon: photon(position, position + way * ((3.0 - position.x) / way.x)), direct: 0.0, throughput: 1.0 }
+}
+
+#[test]
+fn a_hole_is_found_among_random_directions() {
+    let wall = |sampler: &mut Sampler, size: f64| {
+        let [y, z] = sampler.two(2);
+        DVec3::new(1.0, size * (y - 0.5), size * (z - 0.5))
+    };
+    for hole in [0.2, 0.05, 0.01] {
+        // Half of the light.
+        let size = |number: u32| if number.is_multiple_of(2) { hole } else { 2.0 };
+        let visits: Vec<Visit> =
+            (0..2000).map(|number| visit_through(number, |sampler| wall(sampler, size(number)))).collect();
+        let portals = Portals::of(&visits, 3.0);
+        let (lobe, usual) = portals.lobe(0, DVec3::ZERO);
+        let center = lobe.target(DVec3::new(0.3, 0.2, 0.1));
+        assert!(center.distance(DVec3::X) < hole, "{hole}: {center}");
+        // The sphere around a square of side 1 has a radius of 0.71.
+        let radius = (lobe.fills() / (1.0 - lobe.fills())).sqrt() * center.length();
+        assert!((0.6..2.5).contains(&(radius / hole)), "{hole}: {radius}");
+        let through = visits.iter().step_by(2).filter(|visit| portals.crossed(&visit.photon) == Some(0)).count();
+        assert!(through > 950 && (0.45..0.65).contains(&usual), "{hole}: {through} {usual}");
+    }
+}
+
+#[test]
+fn random_directions_have_no_hole() {
+    for seed in 0..20 {
+        let visits: Vec<Visit> = (0..600)
+            .map(|number| {
+                let mut sampler = Sampler::new(12, seed, number);
+                let mut point = |first| {
+                    let [x, y] = sampler.two(first);
+                    DVec3::new(x, y, sampler.one(first + 1))
+                };
+                Visit { photon: photon(point(0), point(2)), direct: 0.0, throughput: 1.0 }
+            })
+            .collect();
+        assert_eq!(Portals::of(&visits, 1.0).len(), 0, "{seed}");
+    }
+}
+
+#[test]
+fn a_camera_has_a_guide_of_its_own_that_threads_do_not_change() {
+    let (scene, camera) = cornell(4, 4);
+    let (other, cancel) = (cornell(5, 4).1, Cancel::default());
+    let raised = Cancel::default();
+    raised.raise();
+    assert!(Guide::learned(&scene, &camera, &raised).is_none());
+    let found = Guide::learned(&scene, &camera, &cancel).unwrap();
+    assert!(Arc::ptr_eq(&Guide::learned(&scene, &camera, &raised).unwrap(), &found));
+    assert!(!Arc::ptr_eq(&Guide::learned(&scene, &other, &cancel).unwrap(), &found));
+    let densities = |threads| {
+        let pool = raywright_base::workers::pool(Some(threads)).unwrap();
+        let scene = cornell(4, 4).0;
+        let guide = pool.install(|| Guide::learned(&scene, &camera, &Cancel::default())).unwrap();
+        let density = |number| {
+            let mut sampler = Sampler::new(13, 0, number);
+            let ([x, y], z) = (sampler.two(0), sampler.one(1));
+            let (low, size) = (scene.region().min, scene.region().max - scene.region().min);
+            let local = guide.at(low + size * DVec3::new(x, y, z)).unwrap();
+            local.pdf(Level::Scalar, warp::uniform_sphere(sampler.two(2)))
+        };
+        (0..200).map(density).collect::<Vec<_>>()
+    };
+    let one = densities(1);
+    assert!(one.iter().filter(|&&density| density > 0.0).count() > 100);
+    assert_eq!(densities(3), one);
 }

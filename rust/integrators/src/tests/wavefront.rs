@@ -5,7 +5,7 @@ use super::{job, samples_of};
 use crate::one_by_one::OneByOne;
 use crate::path_settings::{Follow, PathSettings};
 use crate::wavefront::Wavefront;
-use crate::{CameraSample, Guide, Integrator, Path, Session};
+use crate::{CameraSample, Guide, Guiding, Integrator, Path, Session};
 use raywright_base::math::{DVec3, Ray, Vec3};
 use raywright_base::sampling::{Sampler, warp};
 use raywright_base::workers::Cancel;
@@ -255,8 +255,9 @@ fn guided_paths_find_on_average_what_others_find() {
     let glass = room(vec![panel()], vec![ball(0.4, 1.0, 0.2, 0.9, Dielectric::new(1.5, 0.0))]);
     let pane = room(vec![panel()], vec![of(pane(), ThinDielectric::new(1.5))]);
     for scene in [&glass, &pane] {
-        let path = Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, caustics: true, ..Path::default() };
-        assert!(Wavefront::takes(&job(scene)) && path.is_guided(scene));
+        let path =
+            Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, guiding: Guiding::Photons, ..Path::default() };
+        assert!(Wavefront::takes(&job(scene)) && path.guiding_in(scene) == Guiding::Photons);
         let guide = Guide::of(scene, &Cancel::default());
         assert!(guide.is_some());
         assert_same_mean_as(scene, guide, eye);
@@ -283,7 +284,7 @@ fn what_a_sample_finds_depends_on_no_other() {
     for scene in [&lit, &open] {
         let job = job(scene);
         assert!(Wavefront::takes(&job));
-        let path = Path { caustics: true, ..Path::default() };
+        let path = Path { guiding: Guiding::Photons, ..Path::default() };
         let session = path.begin(job, &Cancel::default());
         let samples: Vec<_> = (0..5000)
             .map(|number| {

@@ -54,10 +54,6 @@ impl WavefrontWorker<'_> {
         let around = (&block.media.outside, &mut block.spectral);
         let surfaces = &block.surfaces;
         block.bsdf.evaluate_materials(self.level, self.scene, met, surfaces, around, &chance, throughput);
-        // The density with which a path comes to the second point that it shares must be known.
-        if bounce == 0 && self.sharing.is_some() {
-            block.bsdf.guided.do_not_aim();
-        }
         self.end_wavelengths();
     }
 
@@ -161,6 +157,11 @@ impl WavefrontWorker<'_> {
                 next.throughput.set(lane, before.get(lane));
             }
         }
+        // Roulette at a second point would change the density of paths that share there.
+        if bounce == 0 && self.sharing.is_some() {
+            block.bsdf.guided.aimed = [1.0; LANES];
+        }
+        let (guided, next) = (&block.bsdf.guided, &mut block.next);
         let mut goes_on = [0; LANES];
         matte::survive(level, &next.throughput, &next.pdf, &mut goes_on);
         let misses = std::array::from_fn(|lane| [block.surfaces.primitive[lane], Ray::NO_TRIANGLE]);

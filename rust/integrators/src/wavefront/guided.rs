@@ -62,11 +62,6 @@ impl<'a> GuidedBlock<'a> {
         throughput.set(lane, t / survival as f32);
     }
 
-    /// A path that shares must come to its second point with a known density, so it is not aimed before.
-    pub fn do_not_aim(&mut self) {
-        self.locals = [None; LANES];
-    }
-
     /// The density of a direction that the surface of a lane draws with `pdf`, where paths aim as well.
     #[inline]
     pub fn density(&self, level: Level, lane: usize, pdf: f64, direction: DVec3) -> f64 {

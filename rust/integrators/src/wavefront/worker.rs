@@ -43,7 +43,7 @@ pub(super) struct WavefrontWorker<'a> {
     pub(super) branches: Option<Branches>,
     pub(super) ways: Vec<Way>,
     /// State of path sharing, if paths share.
-    pub(super) sharing: Option<PathSharing>,
+    pub(super) sharing: Option<PathSharing<'a>>,
     /// Radiances of samples, and then the radiances that they share.
     pub(super) found: Vec<Rgb>,
     pub(super) reflectances: Reflectances,
@@ -222,7 +222,7 @@ impl<'a> WavefrontWorker<'a> {
             known,
             branches: settings.may_split().then(Branches::default),
             ways: Vec::new(),
-            sharing: (shares && !media).then(|| PathSharing::new(level)),
+            sharing: (shares && !media).then(|| PathSharing::new(level, guide)),
             found: Vec::new(),
             reflectances: Reflectances::new(scene),
             paths: [PathQueue::with_room(BATCH, extra), PathQueue::with_room(BATCH, extra)],
