@@ -317,8 +317,8 @@ pub fn student<'py>(
 }
 
 /// Returns whether paths could share samples in a scene, whether photons could guide them through specular objects, and
-/// whether their guide could learn, whatever the path's options; photons are traced for the second. `look` is called whenever signals are handled, and
-/// may raise to end it.
+/// whether their guide could learn, whatever the path's options; photons are traced for the second. `look` is called
+/// whenever signals are handled, and may raise to end it.
 #[pyfunction]
 pub fn chances(
     py: Python<'_>,

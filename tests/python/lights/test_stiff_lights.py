@@ -181,3 +181,44 @@ def test_a_ball_that_shines_and_reflects_is_seen_by_itself_from_outside_only():
         camera = rw.Camera(np.add(center, (0, 0, 9)), center, fov=8, width=16, height=16)
         image = rw.render(rw.Scene(ball, precision="double"), camera, samples=16, progress=False)
         np.testing.assert_array_equal(image.rgb, 1)
+
+
+def lamps(kind, scale):
+    """A room of some size, with lamps of a kind, and a camera in it."""
+
+    def box(low, high, **how):
+        return rw.Box(np.multiply(low, scale), np.multiply(high, scale), **how)
+
+    def corners(x, z, size):
+        return np.array([(x, 0.9, z), (x + size, 0.9, z), (x + size, 0.9, z + size), (x, 0.9, z + size)])
+
+    def quad(x, z, size):
+        return rw.Mesh(corners(x, z, size) * scale, [(0, 1, 2), (0, 2, 3)], emission=2.0)
+
+    shining = {
+        "a square": [quad(-0.3, -0.3, 0.6)],
+        "a ball": [rw.Sphere((0, 0.5 * scale, 0), 0.2 * scale, emission=2.0)],
+        "a disk": [rw.Disk((0, 0.9 * scale, 0), (0, -1, 0), 0.4 * scale, emission=2.0)],
+        "many squares": [quad(x, z, 0.05) for x in np.linspace(-0.9, 0.8, 8) for z in (-0.8, 0.1, 0.7)],
+    }
+    walls = box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse(0.5))
+    if kind == "a square":
+        at = np.array([(x, y, z) for x in (-1.0, 1) for y in (-1.0, 1) for z in (-1.0, 1)]) * scale
+        quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+        faces = [face for a, b, c, d in quads for face in ((a, b, c), (a, c, d))]
+        walls = rw.Mesh(at, faces, material=rw.Diffuse(0.5))
+    eye, target = (0.3 * scale, 0.1 * scale, 0.9 * scale), (0, -0.5 * scale, 0)
+    return rw.Scene([walls, *shining[kind]]), rw.Camera(eye, target, fov=70, width=8, height=8)
+
+
+@pytest.mark.parametrize("exponent", [-100, -60, -40, -30, 30, 40, 60, 100])
+@pytest.mark.parametrize("kind", ["a square", "a ball", "a disk", "many squares"])
+def test_a_room_is_as_bright_at_any_size(kind, exponent):
+    """Without lamps that are drawn, or with what f32 makes of these sizes, it is darker by a tenth or more."""
+    for way in (rw.Path(max_depth=3, reuse=1, guiding="none"), rw.Path(max_depth=3, reuse=4, guiding="none")):
+        usual, other = (
+            rw.render(*lamps(kind, scale), way, samples=256, progress=False).rgb
+            for scale in (1.0, 2.0**exponent)
+        )
+        assert usual.mean() > 1e-3
+        np.testing.assert_allclose(other.mean(), usual.mean(), rtol=0.04)

@@ -98,7 +98,7 @@ impl Cells {
     }
 
     /// Build cells of at most [`PHOTONS`] with light each. `told` makes a cell of those in and around it.
-    fn new<P: Placed>(
+    fn new<P: Positioned>(
         mut photons: Vec<P>,
         told: impl Fn(&mut Vec<P>, (DVec3, DVec3)) -> (Leaf, Vec<Lobe>) + Sync,
     ) -> Self {
@@ -124,7 +124,7 @@ impl Cells {
     }
 
     /// Split a range of photons. Leaves are numbered in the order of their ranges.
-    fn divide<P: Placed>(&mut self, photons: &mut [P], range: Range<usize>, ranges: &mut Vec<Range<usize>>) {
+    fn divide<P: Positioned>(&mut self, photons: &mut [P], range: Range<usize>, ranges: &mut Vec<Range<usize>>) {
         let mine = &mut photons[range.clone()];
         let (min, max) = bounds(mine);
         let size = max - min;
@@ -144,7 +144,7 @@ impl Cells {
     }
 
     /// Append the photons of a node inside a box.
-    fn gather<P: Placed>(&self, node: usize, photons: &[P], (min, max): (DVec3, DVec3), near: &mut Vec<P>) {
+    fn gather<P: Positioned>(&self, node: usize, photons: &[P], (min, max): (DVec3, DVec3), near: &mut Vec<P>) {
         let Node { at, axis, second } = self.nodes[node];
         if axis == Node::NONE {
             let inside = |p: &&P| p.position().cmpge(min).all() && p.position().cmple(max).all();
@@ -275,14 +275,14 @@ fn divide(photons: &mut [Photon], size: f64) -> Vec<(Lobe, f64)> {
 }
 
 /// What has a position.
-trait Placed: Copy + Send + Sync {
+trait Positioned: Copy + Send + Sync {
     fn position(&self) -> DVec3;
 
     /// Return whether light arrives.
     fn is_lit(&self) -> bool;
 }
 
-impl Placed for Photon {
+impl Positioned for Photon {
     fn position(&self) -> DVec3 {
         self.position
     }
@@ -292,7 +292,7 @@ impl Placed for Photon {
     }
 }
 
-impl Placed for Visit {
+impl Positioned for Visit {
     fn position(&self) -> DVec3 {
         self.photon.position
     }
@@ -302,7 +302,7 @@ impl Placed for Visit {
     }
 }
 
-fn bounds(photons: &[impl Placed]) -> (DVec3, DVec3) {
+fn bounds(photons: &[impl Positioned]) -> (DVec3, DVec3) {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     photons.iter().fold(start, |(min, max), p| (min.min(p.position()), max.max(p.position())))
 }

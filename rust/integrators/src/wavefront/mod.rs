@@ -50,6 +50,9 @@ pub(super) struct Wavefront<'a> {
 /// Radiances that f32 holds, with the squares of numbers that follow from them.
 const RADIANCES: std::ops::Range<f64> = 1e-15..1e15;
 
+/// Sizes of scenes in which f32 holds the products of three lengths, also where a lamp is a thousandth of the scene.
+const SIZES: std::ops::Range<f64> = 1e-9..1e12;
+
 impl<'a> Wavefront<'a> {
     /// Paths of a picture, which may be guided, and end where light is known.
     pub fn new(
@@ -61,10 +64,15 @@ impl<'a> Wavefront<'a> {
         Self { job, settings, guide, known }
     }
 
-    /// Return whether f32 holds the radiances of a scene, and tells the pixels of its picture apart.
+    /// Return whether f32 holds the radiances and lengths of a scene, and tells the pixels of its picture apart.
     pub fn takes(job: &Job<'_>) -> bool {
         let mut radiances = job.scene.lights().radiances();
-        tells_pixels_apart(job) && radiances.all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
+        let size = job.scene.region().radius;
+        // Infinite planes tell no size.
+        let is_usual = size == 0.0 || !size.is_finite() || SIZES.contains(&size);
+        is_usual
+            && tells_pixels_apart(job)
+            && radiances.all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
     }
 }
 
