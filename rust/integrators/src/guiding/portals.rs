@@ -12,7 +12,7 @@ const SEGMENTS: usize = 512;
 const PORTALS: usize = 8;
 
 /// Minimum share of segments through a portal of those through a sphere of four times the radius, and the minimum
-/// logarithm of the likelihood of so many, relative to evenly distributed segments: eight without others around have 15.
+/// logarithm of the likelihood of so many, relative to evenly distributed segments: 8 without others around have 15.
 const SHARE: f64 = 0.5;
 const LIKELY: f64 = 14.0;
 
