@@ -239,7 +239,7 @@ impl Training<'_> {
         let radiance = (value * light.weight).mean();
         let from = here.ray_origin();
         let ray = light.source.as_ref().map_or_else(|| from.ray(light.direction), |source| from.segment(source));
-        (radiance > 0.0 && radiance.is_finite()).then(|| (Ray { time, ..ray }, [radiance, irradiance]))
+        (radiance > 0.0 && radiance.is_finite()).then_some((Ray { time, ..ray }, [radiance, irradiance]))
     }
 
     /// Sample a direction, by the guide or by the BSDF.
