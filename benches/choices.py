@@ -1,4 +1,4 @@
-"""What is chosen where nothing is named, against all that could be named: error by run time.
+"""Compare the options that a pilot chooses with all others: error by run time.
 
     python benches/choices.py [--scene NAME ...] [--side 128] [--samples 64] [--repeat 3] [--reference 2048]
 

@@ -107,7 +107,7 @@ def by_arrays(flat, origin, direction, best):
 
 
 def seconds(ask, repeats):
-    """Return the median time of a call, after one that warms up, and what it returns."""
+    """Return the median time of a call after a warm-up, and its result."""
     answer, times = ask(), []
     for _ in range(repeats):
         start = time.perf_counter()
@@ -240,7 +240,7 @@ def kinds_of_rays(scene, count):
 
 
 def differing(hits, wanted):
-    """Count rays of which the answer differs in any bit."""
+    """Count rays whose answers differ in any bit."""
     wrong = np.zeros(hits.t.shape, bool)
     for name in ("t", "shape_id", "primitive", "uv"):
         one, other = (np.ascontiguousarray(getattr(each, name)) for each in (hits, wanted))

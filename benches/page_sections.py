@@ -26,7 +26,7 @@ _SAMPLERS = ("independent", "stratified", "multijitter")
 
 @dataclass(frozen=True)
 class Sizes:
-    """How much is measured. The page's take five minutes on two cores."""
+    """Amount of measurement. The page's take five minutes on two cores."""
 
     triangles: int = 70_000
     threads: tuple[int, ...] = (1, 2)

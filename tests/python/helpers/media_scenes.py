@@ -1,4 +1,4 @@
-"""What tests of media look at, and how they look."""
+"""Scenes and cameras of tests of media."""
 
 import math
 
@@ -17,7 +17,7 @@ def slab(medium, thickness=1.0):
 
 
 def of_depth(depth, albedo, g=0.0, length=1.0):
-    """A medium of which so long a way has this optical depth."""
+    """Return a medium of an optical depth over a length."""
     extinction = depth / length
     phase = rw.HenyeyGreenstein(g) if g else rw.media.Isotropic()
     return rw.Homogeneous((1 - albedo) * extinction, albedo * extinction, phase)

@@ -86,7 +86,7 @@ def test_most_paths_find_it():
 
 
 def room(*more, lamp=0.4):
-    """Gray walls around the origin, a lamp under the ceiling, and what else; seen from within."""
+    """Gray walls around the origin, a lamp under the ceiling, and other shapes; seen from within."""
     walls = rw.Box((-1, -1, -1), (1, 1, 1), material=rw.Diffuse((0.7, 0.5, 0.3)))
     shines = quad(
         (-lamp, 0.95, -lamp), (2 * lamp, 0, 0), (0, 0, 2 * lamp), material=rw.Diffuse(0.2), emission=8

@@ -156,7 +156,7 @@ WITHIN, WITHOUT = (
 @pytest.mark.parametrize("camera", [WITHIN, WITHOUT], ids=["seen from within", "and from without"])
 @pytest.mark.parametrize(("samples", "most"), [(128, 0.005), pytest.param(1024, 0.002, marks=slow)])
 def test_what_is_white_is_white_by_way_of_glass(camera, samples, most):
-    """Whatever is looked at in even light that nothing absorbs is as bright as that.
+    """All surfaces in uniform light without absorption have its radiance.
 
     From without, both ends of all paths have parted where they are joined: the hero counts once.
     """

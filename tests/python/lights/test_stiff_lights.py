@@ -214,7 +214,7 @@ def lamps(kind, scale):
 @pytest.mark.parametrize("exponent", [-100, -60, -40, -30, 30, 40, 60, 100])
 @pytest.mark.parametrize("kind", ["a square", "a ball", "a disk", "many squares"])
 def test_a_room_is_as_bright_at_any_size(kind, exponent):
-    """What f32 cannot hold would make it darker by a tenth or more."""
+    """Overflow of f32 would make it darker by a tenth or more."""
     for way in (rw.Path(max_depth=3, reuse=1, guiding="none"), rw.Path(max_depth=3, reuse=4, guiding="none")):
         usual, other = (
             rw.render(*lamps(kind, scale), way, samples=256, progress=False).rgb

@@ -31,7 +31,7 @@ def scenes():
 
 @cache
 def kept(name):
-    """Return what is kept of a scene as pixels of which each block has its mean and error."""
+    """Return the stored means and errors of a scene as pixels, block by block."""
     with np.load(REFERENCES) as found:
         mean, error = (found[f"{name}: {what}"] for what in ("mean", "standard error"))
     block = 4 if name.startswith("maps") else 8

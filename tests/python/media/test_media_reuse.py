@@ -17,7 +17,7 @@ def render(scene, reuse, samples, seed=0, depth=None, roulette=4, camera=CAMERA,
 
 
 def filled(medium, *more, sky=0.0, **around):
-    """A ball of a medium under a lamp, and what else there is."""
+    """A ball of a medium under a lamp, and other shapes."""
     ball = rw.Sphere((0, 0, 0), 1.0, material=rw.MediumInterface(medium))
     return rw.Scene([ball, LAMP, *more], environment=sky, **around)
 

@@ -1,4 +1,4 @@
-"""Many rays in each stiff case, and no failure in any: what is true of closed surfaces needs no oracle.
+"""Many rays in each stiff case, and no failure in any: facts about closed surfaces need no oracle.
 
 There are a million each if `RAYWRIGHT_SLOW` is set, and an eighth otherwise.
 
@@ -121,7 +121,7 @@ def test_grazing_angles(angle):
 
 @pytest.mark.parametrize("distance", [1e2, 1e4, 1e6, 1e8])
 def test_origins_far_away(distance):
-    """What is aimed within the sphere that the surface encloses hits, an even number of times."""
+    """Rays towards points within the enclosed sphere hit, an even number of times."""
     rng = np.random.default_rng(4)
     mesh = placed(1.0, 0.0, np.float32)
     scene = rw.Scene(mesh)

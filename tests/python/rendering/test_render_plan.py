@@ -1,4 +1,4 @@
-"""What is chosen for a render where nothing is named, and that a picture says so."""
+"""A render chooses open options, and its picture reports them."""
 
 import pickle
 import threading

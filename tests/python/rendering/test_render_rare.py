@@ -23,7 +23,7 @@ def true_errors(images, reference, share):
 
 
 def judged(scene, camera, samples, seeds, reference=None):
-    """How many tell their error or that they cannot, how many cannot, and estimates over the truth."""
+    """Return the numbers of honest and of untrusted errors, and the ratios of estimates to the truth."""
     longest = pictures(scene, camera, LONG, seeds) if reference is None else None
     if longest is not None:
         reference = np.mean([image.rgb for image in longest], axis=0, dtype=float)

@@ -25,7 +25,7 @@ def unit(*vector):
 
 
 def seen(shape, lights=(), sky=None, towards=(0, 0, 1), way=None, mode="raw", samples=4):
-    """The middle of what is seen of the square from a direction, and its standard error."""
+    """Return the mean radiance of the square from a direction, and its standard error."""
     towards = unit(*towards)
     up = (0, 1, 0) if abs(towards[1]) < 0.9 else (1, 0, 0)
     eye = rw.Camera(tuple(4 * towards), (0, 0, 0), up=up, fov=1.0, width=2, height=2)
@@ -135,7 +135,7 @@ def test_an_even_sky_lights_what_of_it_is_above_both_horizons(way):
 
 @pytest.mark.parametrize("way", [rw.Bidirectional(max_depth=3), rw.LightTraced(max_depth=3)], ids=repr)
 def test_light_from_lights_scatters_as_seen_from_the_camera(way):
-    """Normals that lean both ways, and one from a map, between a lamp and who looks."""
+    """Normals that lean both ways, and one from a map, between a lamp and the camera."""
     lean = unit(0.5, 0.2, 1)
     square = floor(lean, mapped(unit(0.3, -0.6, 1)))
     wall = rw.Mesh(
