@@ -34,8 +34,8 @@ struct Rays {
     direction: [[f32; LANES]; 3],
     /// Inverse directions, at most [`STEEPEST`].
     inverse: [[f32; LANES]; 3],
-    /// The error bound of `FLAT` patches by axis, and the factor of 1 + 1/|n·d| in all bounds ([`test`]).
-    error: [[f32; LANES]; 3],
+    /// By axis, 1 + 1/|n·d| of `FLAT` patches; and the rays' part of its factor in all error bounds ([`test`]).
+    steeper: [[f32; LANES]; 3],
     unit: [f32; LANES],
     misses: [[u32; LANES]; 2],
 }
@@ -68,6 +68,12 @@ fn steepness(slope: f32) -> f32 {
     lesser(1.0 / slope.abs(), STEEPEST)
 }
 
+/// The part of a shape's or a ray's largest coordinate in all error bounds ([`test`]).
+#[inline(always)]
+fn unit(size: f32) -> f32 {
+    (64.0 * UNIT) * size
+}
+
 /// Return all bits if the sign bit is set. Signs combine in whole registers; masks of comparisons are narrowed first.
 #[inline(always)]
 fn signs(bits: u32) -> u32 {
@@ -82,7 +88,7 @@ fn beyond<const FUSED: bool>(([x, y], offset): EdgeLine, p: [f32; 2]) -> f32 {
 
 /// Tests the patch of number `index`. With `ANY`, every hit is noted as patch 0. A `FLAT` patch is normal to an axis.
 ///
-/// With ε = 2⁻²⁴, let S be the sum of the largest coordinates of scene and origin, and let t' be the exact distance of
+/// With ε = 2⁻²⁴, let S be the sum of the largest coordinates of patch and origin, and let t' be the exact distance of
 /// a hit: t' ≤ √3·S, as directions have length 1. The numerator of `t` errs by at most 15εS: sums of numbers up to S,
 /// and the roundings of the plane and the origin. The denominator errs by at most 7ε, for a normal whose largest
 /// coordinate is 1. So |t − t'| ≤ (15 + 7√3)εS/|n·d| + εt', with the computed n·d. The position errs by that and
@@ -104,7 +110,7 @@ fn test<const FUSED: bool, const OUTLINE: usize, const FLAT: bool, const ANY: bo
     if FLAT {
         for i in 0..LANES {
             t[i] = -(oz[i] - patch.height) * rays.inverse[z][i];
-            error[i] = rays.error[z][i];
+            error[i] = (patch.unit + rays.unit[i]) * rays.steeper[z][i];
         }
     } else {
         for i in 0..LANES {
@@ -114,7 +120,8 @@ fn test<const FUSED: bool, const OUTLINE: usize, const FLAT: bool, const ANY: bo
             let slope = fused::<FUSED>(patch.slopes[0], dx[i], slope);
             let steep = steepness(slope);
             t[i] = -above * steep.copysign(slope);
-            error[i] = fused::<FUSED>(rays.unit[i], steep, rays.unit[i]);
+            let unit = patch.unit + rays.unit[i];
+            error[i] = fused::<FUSED>(unit, steep, unit);
         }
     }
     if ANY {
@@ -224,15 +231,16 @@ loops! {
         }
         for i in 0..LANES {
             let (x, y, z) = (rays.origin[0][i].abs(), rays.origin[1][i].abs(), rays.origin[2][i].abs());
-            let size = extent + greater(greater(x, y), z);
-            rays.unit[i] = (64.0 * UNIT) * size;
+            let size = greater(greater(x, y), z);
+            rays.unit[i] = unit(size);
             // No hit lies as far.
-            best.far[i] = 2.0 * size;
+            best.far[i] = 2.0 * (extent + size);
         }
-        for (inverse, (error, direction)) in rays.inverse.iter_mut().zip(rays.error.iter_mut().zip(&rays.direction)) {
+        for (inverse, (steeper, direction)) in rays.inverse.iter_mut().zip(rays.steeper.iter_mut().zip(&rays.direction))
+        {
             for i in 0..LANES {
                 let steep = steepness(direction[i]);
-                error[i] = rays.unit[i] + rays.unit[i] * steep;
+                steeper[i] = 1.0 + steep;
                 inverse[i] = steep.copysign(direction[i]);
             }
         }
@@ -287,7 +295,7 @@ impl FewShapes {
         let mut patches = Vec::new();
         rest.reverse();
         while let Some(first) = rest.pop() {
-            let quadrilateral = |second: &Half| outline(&[first, *second], region.extent).is_some();
+            let quadrilateral = |second: &Half| outline(&[first, *second]).is_some();
             let partner = rest.iter().enumerate().rev().find(|(_, second)| quadrilateral(second));
             let halves = match partner.map(|(i, _)| i) {
                 Some(i) => [Some(first), Some(rest.remove(i))],
@@ -297,7 +305,7 @@ impl FewShapes {
                 shape_of[half.primitive as usize] = patches.len() as u32;
             }
             // Degenerate triangles cannot be hit.
-            let Some(patch) = Patch::new(halves, region.extent) else { continue };
+            let Some(patch) = Patch::new(halves) else { continue };
             patches.push(patch);
         }
         let is_empty = patches.is_empty() && round.is_empty();
@@ -346,7 +354,7 @@ impl FewShapes {
             origin: [[0.0; LANES]; 3],
             direction: [[0.0; LANES]; 3],
             inverse: [[0.0; LANES]; 3],
-            error: [[0.0; LANES]; 3],
+            steeper: [[0.0; LANES]; 3],
             unit: [0.0; LANES],
             misses: [[NONE; LANES]; 2],
         };

@@ -1,5 +1,6 @@
 //! Triangles and quadrilaterals, prepared as patches of a plane with edges as lines.
 
+use super::unit;
 use raywright_base::math::DVec3;
 
 /// Half of the distance between neighboring f32 numbers in [1, 2).
@@ -16,6 +17,8 @@ pub(super) struct Patch {
     /// The plane: `slopes` · (coordinates along the first two axes) + coordinate along the third = `height`.
     pub slopes: [f32; 2],
     pub height: f32,
+    /// Its part of all error bounds ([`super::test`]).
+    pub unit: f32,
     pub outline: Outline,
     /// Its edges, as lines with the patch on their negative side. Of a parallelogram, the first two pass through its
     /// center.
@@ -46,14 +49,21 @@ pub(super) struct Half {
 
 /// The corners in order of the quadrilateral that two triangles form; the first and the third belong to one triangle
 /// each. `None` if it is not convex, or not planar to within f32 rounding.
-pub(super) fn outline([first, second]: &[Half; 2], extent: f64) -> Option<[DVec3; 4]> {
+pub(super) fn outline(halves: &[Half; 2]) -> Option<[DVec3; 4]> {
+    let [first, second] = halves;
     let (a, b) = (first.corners, second.corners);
     let [own, other] = shared(a, b)?;
     let all = [a[own], a[(own + 1) % 3], b[other], a[(own + 2) % 3]];
     let normal = (a[1] - a[0]).cross(a[2] - a[0]).try_normalize()?;
-    let is_flat = normal.dot(b[other] - a[own]).abs() <= 2.0 * f64::from(UNIT) * extent;
+    let is_flat = normal.dot(b[other] - a[own]).abs() <= 2.0 * f64::from(UNIT) * extent(halves);
     let turns = |i: usize| (all[(i + 1) % 4] - all[i]).cross(all[(i + 2) % 4] - all[(i + 1) % 4]).dot(normal) > 0.0;
     (is_flat && (0..4).all(turns)).then_some(all)
+}
+
+/// The largest coordinate of some triangles.
+fn extent(halves: &[Half]) -> f64 {
+    let sizes = halves.iter().flat_map(|half| half.corners).map(|corner| corner.abs().max_element());
+    sizes.fold(0.0, f64::max)
 }
 
 /// The unshared corner of each of two triangles, if they share the other two.
@@ -67,8 +77,9 @@ fn shared(a: [DVec3; 3], b: [DVec3; 3]) -> Option<[usize; 2]> {
 
 impl Patch {
     /// `None` for degenerate triangles.
-    pub fn new(halves: [Option<Half>; 2], extent: f64) -> Option<Self> {
+    pub fn new(halves: [Option<Half>; 2]) -> Option<Self> {
         let [a, b, c] = halves[0]?.corners;
+        let extent = halves.iter().flatten().map(|half| extent(&[*half])).fold(0.0, f64::max);
         let normal = (b - a).cross(c - a).try_normalize()?;
         let z = if normal.x.abs() == normal.abs().max_element() {
             0
@@ -88,7 +99,7 @@ impl Patch {
         let first = halves[0]?.primitive;
         let (outline, edges, reach, diagonal, primitives) = match halves {
             [Some(one), Some(other)] => {
-                let all = outline(&[one, other], extent)?;
+                let all = outline(&[one, other])?;
                 let mut edges = [0, 1, 2, 3].map(|i| line(all[i], all[(i + 1) % 4]));
                 let (center, skew) = (0.5 * (all[0] + all[2]), all[0] - all[1] + all[2] - all[3]);
                 let mut reach = [0.0; 2];
@@ -116,6 +127,7 @@ impl Patch {
             axes: [x, y, z],
             slopes,
             height: height as f32,
+            unit: unit(extent as f32),
             outline,
             edges,
             reach,

@@ -1,6 +1,6 @@
 //! Spheres, tested against sixteen rays in f32.
 
-use super::{Best, Rays, accept};
+use super::{Best, Rays, accept, unit};
 use raywright_base::math::single::{choose, greater, mask};
 use raywright_base::math::{DVec3, LANES, Ray};
 
@@ -10,13 +10,16 @@ pub(super) struct Sphere {
     pub primitive: u32,
     center: [f32; 3],
     radius: f32,
+    /// Its part of all error bounds.
+    unit: f32,
     /// In f64.
     exact: (DVec3, f64),
 }
 
 impl Sphere {
     pub fn new(primitive: u32, center: DVec3, radius: f64) -> Self {
-        Self { primitive, center: center.as_vec3().to_array(), radius: radius as f32, exact: (center, radius) }
+        let unit = unit((center.abs().max_element() + radius) as f32);
+        Self { primitive, center: center.as_vec3().to_array(), radius: radius as f32, unit, exact: (center, radius) }
     }
 
     /// Tests the sphere, whose number among all shapes is `index`. With `ANY`, every hit is noted as shape 0.
@@ -37,7 +40,7 @@ impl Sphere {
             let (dx, dy, dz) = (dx[i], dy[i], dz[i]);
             let b = x * dx + y * dy + z * dz;
             let (px, py, pz) = (x - b * dx, y - b * dy, z - b * dz);
-            let (distance, unit) = ((px * px + py * py + pz * pz).sqrt(), rays.unit[i]);
+            let (distance, unit) = ((px * px + py * py + pz * pz).sqrt(), self.unit + rays.unit[i]);
             let leaves = mask(index == rays.misses[0][i]);
             let inside = self.radius - distance;
             let half = (greater(inside, 0.0) * (self.radius + distance)).sqrt();
