@@ -6,9 +6,10 @@ mod interaction_lanes;
 pub use interaction_lanes::SurfaceInteractionLanes;
 
 use super::materials::BsdfMix;
-use super::textures::Needs;
+use super::textures::{Needs, TexturePoint};
 use super::{Interaction, LightSampleContext, LookupContext, RayOrigin, Scene, ShadingPoint, SurfacePoint};
 use raywright_base::math::{DVec3, Frame, Hit, Ray, select};
+use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, BsdfSample, Rgb};
 
 /// A surface interaction: the hit point with its BSDF.
@@ -83,6 +84,25 @@ impl SurfaceInteraction {
             here.curvature = here.side * mean_curvature(&point);
         }
         here
+    }
+
+    /// The BSDF at a surface point, if its material needs no more than wavelengths and changes no frame.
+    pub fn bsdf_by_waves(
+        scene: &Scene,
+        surface: SurfacePoint,
+        is_front: bool,
+        waves: Waves,
+        outside: f64,
+    ) -> Option<BsdfMix> {
+        let material = scene.material_at(&surface);
+        if material.needs().of_place() || scene.plan().normals_as_given() {
+            return None;
+        }
+        let point = ShadingPoint::plain(surface);
+        let texture = TexturePoint { waves: Some(waves), ..point.texture };
+        let point = ShadingPoint { texture, is_front, outside, ..point };
+        let changes = material.normal(&point).is_some() || material.tangent(&point).is_some();
+        (!changes).then(|| material.bsdf(&point))
     }
 
     /// The interaction at a hit, without context and in vacuum.

@@ -171,8 +171,14 @@ impl<'a> BsdfBlock<'a> {
                     Cow::Owned(self.surrounded(scene, (met, surfaces), lane, outside))
                 }
                 _ => {
-                    let made = self.frames.replace(lane, |ray, hit, surface| {
-                        SurfaceInteraction::new(scene, ray, hit, surface, LookupContext { width, waves }, outside)
+                    let surface = self.frames.surface(lane).filter(|_| width == 0.0);
+                    let by_waves = surface.zip(waves).and_then(|(surface, waves)| {
+                        SurfaceInteraction::bsdf_by_waves(scene, surface, is_front, waves, outside)
+                    });
+                    let made = by_waves.or_else(|| {
+                        self.frames.replace(lane, |ray, hit, surface| {
+                            SurfaceInteraction::new(scene, ray, hit, surface, LookupContext { width, waves }, outside)
+                        })
                     });
                     Cow::Owned(made.unwrap_or_else(|| Null.into()))
                 }

@@ -64,10 +64,15 @@ impl Smooth {
     /// Values at a path's wavelengths.
     #[inline]
     pub fn lanes(&self, waves: &Waves) -> Rgb {
-        match self.polynomial {
-            Some(polynomial) => waves.lanes(|wavelength| self.scale * sigmoid(argument(polynomial, wavelength))),
-            None => Rgb::splat(self.scale),
+        let Some(polynomial) = self.polynomial else { return Rgb::splat(self.scale) };
+        // Four, as two registers have.
+        let [a, b, c] = waves.all();
+        let mut lanes = [a, b, c, c];
+        for lane in &mut lanes {
+            *lane = self.scale * sigmoid(argument(polynomial, *lane));
         }
+        let [a, b, c, _] = lanes;
+        Rgb::new(a, b, c)
     }
 }
 
@@ -108,7 +113,8 @@ impl Normal {
 
 #[inline]
 fn argument(polynomial: DVec3, wavelength: f64) -> f64 {
-    let t = (wavelength - FIRST) / (LAST - FIRST);
+    const SCALE: f64 = 1.0 / (LAST - FIRST);
+    let t = (wavelength - FIRST) * SCALE;
     (polynomial.x * t + polynomial.y) * t + polynomial.z
 }
 

@@ -69,6 +69,8 @@ impl Waves {
 struct Drawn {
     /// Cumulative probabilities, ending with 1.
     before: Vec<f64>,
+    /// Of equal parts of [0, 1), and of its end, the index of the first probability above the part's start.
+    first: Vec<u16>,
     /// Color of each nm over the density of three samples.
     colours: Vec<Rgb>,
 }
@@ -85,13 +87,24 @@ static DRAWN: LazyLock<Drawn> = LazyLock::new(|| {
         before.push(sum);
     }
     *before.last_mut().expect("there are wavelengths") = 1.0;
+    let first = (0..=PARTS).map(|part| above(&before, 0, part as f64 / PARTS as f64) as u16).collect();
     let colours = seen.iter().zip(&wanted).map(|(&colour, &one)| colour * (all / (3.0 * one))).collect();
-    Drawn { before, colours }
+    Drawn { before, first, colours }
 });
+
+/// Number of equal parts, some for each nm.
+const PARTS: usize = 2048;
+
+/// The index of the first number above `u` in ascending ones, which is not below `start`.
+#[inline]
+fn above(before: &[f64], start: usize, u: f64) -> usize {
+    start + before[start..].iter().take_while(|&&before| before <= u).count()
+}
 
 impl Drawn {
     fn wavelength(&self, u: f64) -> f64 {
-        let after = self.before.partition_point(|&before| before <= u).clamp(1, self.colours.len());
+        let start = self.first[(u * PARTS as f64) as usize].into();
+        let after = above(&self.before, start, u).clamp(1, self.colours.len());
         let (from, to) = (self.before[after - 1], self.before[after]);
         let nm = FIRST + (after - 1) as f64 - 0.5 + (u - from) / (to - from);
         nm.clamp(FIRST, LAST)

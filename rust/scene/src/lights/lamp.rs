@@ -2,7 +2,7 @@
 
 use super::Lights;
 use super::choice::Choice;
-use super::plain::Figure;
+use super::plain::{Figure, PlainLight};
 use crate::Geometry;
 use raywright_base::math::single::{choose, choose_vector, mask};
 use raywright_base::math::{DVec3, LANES, SingleLanes, Vec3, VectorLanes, select};
@@ -15,6 +15,8 @@ pub(super) struct Lamp {
     pub place: DVec3,
     pub form: Form,
     pub radiance: Vec3,
+    /// True if the radiance is that times the emission at the wavelengths of a path.
+    pub has_waves: bool,
     /// Whether the front shines, and the back: all bits or none.
     pub sides: [u32; 2],
     pub primitive: u32,
@@ -117,13 +119,19 @@ impl Lights {
             };
             let (rarity, start) = ((1.0 / probability) as f32, before);
             before += probability;
-            let light = self.plain(geometry, number)?;
+            let plain = self.plain(geometry, number);
+            let by_waves = || {
+                let primitive = self.surfaces[number];
+                PlainLight::by_waves(geometry, &self.luminous(geometry, primitive), primitive)
+            };
+            let (has_waves, light) = (plain.is_none(), plain.or_else(by_waves)?);
             let (place, form) = match light.figure {
                 Figure::Triangle { corners: [a, b, c] } => (a, Form::Triangle([(b - a).as_vec3(), (c - a).as_vec3()])),
                 Figure::Ball { center, radius } => (center, Form::Sphere(radius)),
             };
             let (radiance, sides) = (light.radiance.as_vec3(), light.sides.map(mask));
-            Some(Lamp { place, form, radiance, sides, primitive: light.primitive, rarity, before: start })
+            let primitive = light.primitive;
+            Some(Lamp { place, form, radiance, has_waves, sides, primitive, rarity, before: start })
         };
         (0..self.surfaces.len()).map(lamp).collect()
     }

@@ -6,6 +6,7 @@ use super::sphere_block::draw_spheres;
 use super::triangle_block::draw_triangles;
 use super::{LightSample, LightSampleContext, Lights};
 use crate::geometry::SurfaceBlock;
+use crate::textures::TexturePoint;
 use crate::{Geometry, RayOrigin};
 use raywright_base::math::single::{cosine_hemisphere, to_world};
 use raywright_base::math::{LANES, PathRays, Ray, SingleLanes, Vec3, VectorLanes};
@@ -160,7 +161,8 @@ impl Lights {
                     let Form::Triangle(edges) = &lamp.form else { continue };
                     spread(level, lamp, edges, choice, &mut lamps, &mut lights.primitive);
                 }
-                return draw_lamps(level, surfaces, &lamps, u, lights);
+                draw_lamps(level, surfaces, &lamps, u, lights);
+                return self.shine(geometry, receivers, !0, lights);
             }
             let chosen = std::array::from_fn(|lane| choices.sample(&receivers.get(lane), choice[lane]));
             return self.draw_chosen(level, geometry, receivers, &chosen, u, lights);
@@ -204,6 +206,20 @@ impl Lights {
             (own[0][lane], chosen[lane]) = (x as f32, Some((number, share)));
         }
         self.draw_chosen(level, geometry, receivers, &chosen, &own, lights);
+    }
+
+    /// Lamps that were drawn in some lanes shine by wavelength, if their emission goes by that.
+    fn shine(&self, geometry: &Geometry, receivers: &ReceiverBlock<'_>, which: u32, lights: &mut LightBlock) {
+        if !self.lamps.iter().flatten().any(|lamp| lamp.has_waves) {
+            return;
+        }
+        for lane in (0..receivers.surfaces.count).filter(|lane| which >> lane & 1 == 1 && lights.pdf[*lane] > 0.0) {
+            let emission = self.emission(geometry.locate(lights.primitive[lane]).0);
+            if emission.needs().waves {
+                let at = TexturePoint { waves: receivers.waves[lane], ..TexturePoint::NOWHERE };
+                lights.weight.set(lane, lights.weight.get(lane) * emission.radiance.at(&at).as_vec3());
+            }
+        }
     }
 
     /// Draws light of lights within the scene, given by their numbers and the probabilities of these.
@@ -250,6 +266,7 @@ impl Lights {
                 others |= spheres & !outside[lane] & 1 << lane;
             }
         }
+        self.shine(geometry, receivers, !others, lights);
         for lane in (0..surfaces.count).filter(|lane| others >> lane & 1 == 1) {
             let (receiver, u) = (receivers.get(lane), [u[0][lane].into(), u[1][lane].into()]);
             let drawn = chosen[lane].and_then(|(number, probability)| {

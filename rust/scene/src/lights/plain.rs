@@ -28,6 +28,18 @@ impl PlainLight {
     /// Computes the data of a primitive, if it is a triangle or sphere of uniform emission and opaque to straight rays.
     #[inline]
     pub fn new(geometry: &Geometry, luminous: &Luminous, primitive: u32) -> Option<Self> {
+        let emission = luminous.emission;
+        let radiance = || emission.radiance.at(&TexturePoint::NOWHERE);
+        if emission.needs().any() { None } else { Self::shining(geometry, luminous, primitive, radiance()) }
+    }
+
+    /// The same of one whose emission depends on wavelength alone, with a radiance of 1 at each.
+    pub fn by_waves(geometry: &Geometry, luminous: &Luminous, primitive: u32) -> Option<Self> {
+        let needs = luminous.emission.needs();
+        if needs.waves && !needs.of_place() { Self::shining(geometry, luminous, primitive, Rgb::ONE) } else { None }
+    }
+
+    fn shining(geometry: &Geometry, luminous: &Luminous, primitive: u32, radiance: Rgb) -> Option<Self> {
         let Luminous { emission, open: None } = luminous else { return None };
         let figure = match geometry.shape(primitive) {
             None => Figure::Triangle { corners: geometry.corners(primitive) },
@@ -37,7 +49,6 @@ impl PlainLight {
             }
         };
         let sides = [emission.sides != Sides::Back, emission.sides != Sides::Front];
-        let radiance = || emission.radiance.at(&TexturePoint::NOWHERE);
-        (!emission.needs().any()).then(|| Self { primitive, figure, radiance: radiance(), sides })
+        Some(Self { primitive, figure, radiance, sides })
     }
 }

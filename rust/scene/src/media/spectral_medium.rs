@@ -84,6 +84,7 @@ impl Medium for WavedMedium {
         let absorbed = (here.extinction - here.scattering).at_least(Rgb::ZERO);
         let emission = match &self.emission {
             Some(tint) => tint.lanes(here.emission, waves),
+            None if here.emission.is_black() => Rgb::ZERO,
             None => Smooth::looked_up(here.emission, Role::Amount).lanes(waves),
         };
         let scattering = self.scattering.lanes(here.scattering, waves);

@@ -1,5 +1,6 @@
 //! Tests of all lights: irradiances against closed forms, and densities against samples.
 
+mod blocks;
 mod departures;
 mod emission;
 mod environments;
