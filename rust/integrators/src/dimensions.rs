@@ -13,7 +13,7 @@ impl Dimensions {
     /// Choice of shared light in a group: an unused dimension of the camera.
     pub const SHARING: u32 = 2;
 
-    /// Wavelengths of a path. The dimension may coincide, since such paths share nothing.
+    /// Wavelengths of a path. The dimension may coincide: paths that share have common wavelengths.
     pub const WAVES: u32 = Self::SHARING;
 
     /// Number of bounces with separate dimensions for the branches of a split path. Later bounces use the same numbers

@@ -7,6 +7,7 @@ mod begin_paths;
 mod bidirectional;
 mod boundary_queries;
 mod camera_samples;
+mod common_numbers;
 mod cone_traced;
 mod dimensions;
 mod direct;

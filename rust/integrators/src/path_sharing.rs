@@ -31,7 +31,7 @@ use std::ops::Range;
 /// at times of their own; and a filtered texture shows to each what is of its own width.
 pub(crate) fn can_share(scene: &Scene) -> bool {
     let needs = scene.plan().needs();
-    let is_open = !(needs.masks || needs.nested || needs.media || needs.points.width || needs.waves);
+    let is_open = !(needs.masks || needs.nested || needs.media || needs.points.width);
     is_open && !needs.motion && !scene.lights().is_dark()
 }
 

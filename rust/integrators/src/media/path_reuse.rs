@@ -18,7 +18,6 @@ pub(crate) fn can_share(scene: &Scene) -> bool {
     let is_point = |place| matches!(place, Some(Place::Point(_)));
     needs.even_media
         && !needs.motion
-        && !needs.waves
         && (needs.glow || !scene.lights().is_dark())
         && !scene.lights().others().any(|light| is_point(light.place()))
 }

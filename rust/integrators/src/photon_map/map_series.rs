@@ -4,9 +4,9 @@ use super::map_cache::{Key, MapStore, PhotonCount, Suitable};
 use super::photon_tracing::{PhotonPass, fly};
 use super::radius::{Radii, first};
 use crate::Job;
+use crate::common_numbers::{COMMON_TIME, COMMON_WAVES, spread};
 use crate::light_paths::Limits;
 use raywright_base::math::DVec3;
-use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
 use raywright_scene::Emitters;
@@ -137,22 +137,15 @@ impl<'a, M: PhotonCount + Any + Send + Sync> Series<'a, M> {
         self.radius(self.sending.spread.map(number))
     }
 
-    /// Return a number in [0, 1) for a map and a dimension, evenly spread over the maps of a seed.
-    fn spread(&self, map: u32, dimension: u32) -> f64 {
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let start = Sampler::new(self.job.seed, u32::MAX, u32::MAX).one(dimension);
-        (start + f64::from(map) * GOLDEN).fract()
-    }
-
     /// Return the time within the shutter interval of a map's photons.
     fn time_of(&self, map: u32) -> f64 {
-        self.spread(map, 0)
+        spread(self.job.seed, map, COMMON_TIME)
     }
 
     /// Return the wavelengths of a map's photons, in scenes that need them. Photons and camera paths must have equal
     /// wavelengths.
     fn waves_of(&self, map: u32) -> Option<Waves> {
-        self.job.scene.plan().needs().waves.then(|| Waves::of(self.spread(map, 1)))
+        self.job.scene.plan().needs().waves.then(|| Waves::of(spread(self.job.seed, map, COMMON_WAVES)))
     }
 
     /// Return the wavelengths of a sample's map.

@@ -1,9 +1,9 @@
 //! The stages that take sixteen paths from surfaces of any kind to their next rays.
 
 use super::matte;
-use super::queues::PathLanes;
+use super::queues::{PathLanes, own};
 use super::ways::Way;
-use super::worker::{WavefrontWorker, bits, own};
+use super::worker::{WavefrontWorker, bits};
 use crate::dimensions::Dimensions;
 use crate::path_settings::stratum;
 use crate::resampling::{ResampledLanes, resample};

@@ -2,7 +2,7 @@
 
 use super::direct_light::power_heuristic;
 use super::queues::{Flags, PathQueue};
-use super::waves::PathWaves;
+use super::waves::{self, PathWaves};
 use raywright_base::math::{DVec3, Hit, LANES, Ray};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
@@ -19,7 +19,7 @@ fn receiver(queue: &PathQueue, waves: &[PathWaves], path: usize) -> LightSampleC
 
 /// The wavelengths of a path; `None` for red, green and blue.
 fn waves_of(queue: &PathQueue, waves: &[PathWaves], path: usize) -> Option<Waves> {
-    waves.get(queue.sample[path] as usize).map(|waves| waves.now)
+    waves::at(waves, queue.sample[path])
 }
 
 /// Return whether emission at the end of a path was part of the look-up that its final gather ray started from.

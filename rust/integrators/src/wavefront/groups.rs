@@ -1,5 +1,7 @@
 //! Paths of groups that share what they find from their second surface on ([`crate::path_sharing`]).
 
+use super::queues::Flags;
+use super::waves;
 use super::worker::{BATCH, WavefrontWorker};
 use crate::CameraSamples;
 use crate::dimensions::Dimensions;
@@ -41,6 +43,10 @@ impl WavefrontWorker<'_> {
             primitive: block.surfaces.primitive[lane],
         };
         if bounce == 0 {
+            // Two paths that have both ended their other wavelengths would count the hero three times too often.
+            if block.bsdf.flags[lane] & Flags::SINGLE != 0 {
+                return;
+            }
             sharing.add_first(sample, &point, throughput * reflectance);
         } else if !is_bent && sharing.add_second(sample, &point, throughput) {
             block.throughput.set(lane, Vec3::ONE);
@@ -74,7 +80,7 @@ impl WavefrontWorker<'_> {
             if let Some(sharing) = self.media.as_mut().and_then(|media| media.sharing.as_mut()) {
                 sharing.begin(count);
             }
-            self.follow(samples, start..start + count, cancel, &mut found);
+            self.follow(samples, start..start + count, these, cancel, &mut found);
             let (own, shared) = found.split_at(count);
             radiance.copy_from_slice(own);
             let number = |sample: u32| {
@@ -87,6 +93,7 @@ impl WavefrontWorker<'_> {
             if let Some(sharing) = self.media.as_mut().and_then(|media| media.sharing.as_mut()) {
                 sharing.share(self.scene, these, shared, cancel, radiance);
             }
+            waves::see(&self.waves, radiance);
             (groups, start) = (rest, start + count);
         }
         self.found = found;

@@ -1,7 +1,8 @@
 //! The stages of stochastic alpha masks: paths pass surfaces that are not there for them, and shadow rays are dimmed.
 
 use super::masks::Masks;
-use super::worker::{WavefrontWorker, own};
+use super::queues::own;
+use super::worker::WavefrontWorker;
 use crate::dimensions::Dimensions;
 use crate::shadows::opacity;
 use raywright_base::math::{Hit, LANES, Ray};

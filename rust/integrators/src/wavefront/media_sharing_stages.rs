@@ -1,6 +1,7 @@
 //! The stages of paths that share in a homogeneous medium.
 
 use super::media::{MediumScattering, PathMedia};
+use super::queues::Flags;
 use super::worker::WavefrontWorker;
 use crate::media::path_reuse::{FirstVertex, SecondVertex};
 use raywright_base::math::Vec3;
@@ -29,7 +30,9 @@ impl WavefrontWorker<'_> {
                 vertices.second = Some(SecondVertex::of_medium(at.position));
                 seconds |= 1 << lane;
                 block.share(lane, samples);
-            } else if let (None, Some(here), false) = (vertices.first, at.even, block.bsdf.has_gamut_excess(lane)) {
+            } else if let (None, Some(here), false) =
+                (vertices.first, at.even, block.bsdf.flags[lane] & (Flags::HAS_GAMUT_EXCESS | Flags::SINGLE) != 0)
+            {
                 let PathMedia { media: number, drawn, .. } = media.paths[sample as usize];
                 let throughput = Rgb::from_array(block.throughput.get(lane).as_dvec3().to_array());
                 vertices.first = FirstVertex::new(

@@ -3,9 +3,9 @@
 use super::flights::{Flight, Flights, Passage, Stop, Traveller, shares_stopped};
 use super::media::{Media, MediumScattering, PathMedia};
 use super::medium_stacks::MediumStacks;
-use super::queues::PathQueue;
+use super::queues::{PathQueue, own};
 use super::waves::PathWaves;
-use super::worker::{WavefrontWorker, own};
+use super::worker::WavefrontWorker;
 use crate::CameraSamples;
 use crate::dimensions::Dimensions;
 use crate::media::current_medium::Filled;
@@ -136,6 +136,7 @@ impl Traveller for PathFlights<'_, '_> {
 impl WavefrontWorker<'_> {
     /// Stage: paths of samples start in the media around the camera.
     pub(super) fn start_in_media(&mut self, samples: &CameraSamples, some: Range<usize>) {
+        let shares_waves = self.shares_waves();
         let (Some(media), Some(flights)) = (&mut self.media, &mut self.flights) else { return };
         let Some(samplers) = &samples.samplers else { return };
         let queue = &self.paths[0];
@@ -153,8 +154,8 @@ impl WavefrontWorker<'_> {
             let number = same.map_or_else(|| flights.stacks.number(stack), |(_, number)| number);
             last = Some((stack, number));
             // The first wavelength is the hero: dispersion ends all but that. Of red, green and blue it is any, and of
-            // the wavelengths of known light, which all samples of a number share.
-            let hero = match (self.waves.is_empty(), self.known.is_some(), media.further.last_mut()) {
+            // wavelengths that paths share.
+            let hero = match (self.waves.is_empty(), shares_waves, media.further.last_mut()) {
                 (true, ..) => ((sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2),
                 (false, true, Some(further)) => further.hero(),
                 _ => 0,
@@ -209,11 +210,8 @@ impl PathFlights<'_, '_> {
             for (to, sample) in which.iter_mut().zip(&self.queue.sample[some.clone()]) {
                 *to = own(*sample, self.samples);
             }
-            // Nested glass alone scatters nothing on the way.
-            if self.scene.plan().needs().media {
-                self.samplers.gather(&which, numbers);
-                numbers.one(level, &[Dimensions::of(self.bounce, 0).mask(); LANES], &mut chance);
-            }
+            self.samplers.gather(&which, numbers);
+            numbers.one(level, &[Dimensions::of(self.bounce, 0).mask(); LANES], &mut chance);
             for (lane, i) in some.enumerate() {
                 let PathMedia { media, drawn, .. } = self.media.paths[which[lane] as usize];
                 let [r, g, b] = self.queue.throughput.each_ref().map(|column| f64::from(column[i]));

@@ -2,8 +2,8 @@
 
 use super::matte;
 use super::media::MediumScattering;
-use super::queues::{Flags, PathLanes};
-use super::worker::{WavefrontWorker, bits, own};
+use super::queues::{Flags, PathLanes, own};
+use super::worker::{WavefrontWorker, bits};
 use crate::dimensions::Dimensions;
 use crate::known_light::Visit;
 use crate::media::path_reuse::SecondVertex;

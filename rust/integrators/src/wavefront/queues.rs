@@ -109,6 +109,12 @@ pub(super) struct ShadowLanes<'a> {
     pub ratio: &'a [f32; LANES],
 }
 
+/// The place of a sample in its batch. Shared radiance has numbers of its own, after those of all samples.
+#[inline(always)]
+pub(super) fn own(sample: u32, samples: u32) -> u32 {
+    sample.min(sample.wrapping_sub(samples)).min(sample.wrapping_sub(samples.wrapping_mul(2)))
+}
+
 fn three(room: usize) -> [Vec<f32>; 3] {
     [0; 3].map(|_| vec![0.0; room])
 }

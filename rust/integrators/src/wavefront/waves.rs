@@ -1,6 +1,8 @@
 //! Wavelengths of paths in place of red, green and blue.
 
+use super::queues::own;
 use crate::CameraSamples;
+use crate::common_numbers::{COMMON_WAVES, spread};
 use crate::dimensions::Dimensions;
 use crate::known_light::KnownLight;
 use crate::terminate_wavelengths::Parting;
@@ -35,21 +37,37 @@ impl WavesBlock {
         Self { waves: [None; LANES], around: [Dispersive::NONE; LANES], parting: [None; LANES], ends: [false; LANES] };
 }
 
-/// Wavelengths of some of the samples, in a scene that needs them: those of known light, if there is any.
+/// Draw wavelengths for some of the samples, in a scene that needs them. Known light has its own wavelengths.
+///
+/// Samples of a group have equal wavelengths, so that they can share. Groups are formed anew for each sample number, so
+/// all groups of a number have equal wavelengths, by a seed: this stratifies the wavelengths of each pixel. Without
+/// groups, each sample has its own wavelengths.
 pub(super) fn draw(
     samples: &CameraSamples,
     some: Range<usize>,
+    (groups, seed): (&[u32], u64),
     known: Option<&dyn KnownLight>,
     waves: &mut Vec<PathWaves>,
 ) {
     let Some(samplers) = &samples.samplers else { return };
     waves.clear();
-    waves.extend(some.map(|i| {
-        let mut sampler = samplers.get(i);
-        let of_known = known.and_then(|known| known.waves(sampler.number()));
-        let first = of_known.unwrap_or_else(|| Waves::of(sampler.one(Dimensions::WAVES)));
-        PathWaves { first, now: first }
-    }));
+    let (shares, mut groups, mut start) = (!groups.is_empty(), groups.iter(), some.start);
+    while start < some.end {
+        let mut sampler = samplers.get(start);
+        let number = sampler.number();
+        let first = known.and_then(|known| known.waves(number)).unwrap_or_else(|| {
+            let u = if shares { spread(seed, number, COMMON_WAVES) } else { sampler.one(Dimensions::WAVES) };
+            Waves::of(u)
+        });
+        let count = groups.next().map_or(1, |&count| count as usize);
+        waves.extend(std::iter::repeat_n(PathWaves { first, now: first }, count));
+        start += count;
+    }
+}
+
+/// Return the wavelengths that the path of a sample carries; `None` for red, green and blue.
+pub(super) fn at(waves: &[PathWaves], sample: u32) -> Option<Waves> {
+    waves.get(own(sample, waves.len() as u32) as usize).map(|waves| waves.now)
 }
 
 /// Converts radiances at the wavelengths of samples to RGB.

@@ -1,6 +1,7 @@
 //! The stages of paths that carry wavelengths.
 
-use super::queues::Flags;
+use super::queues::{Flags, own};
+use super::waves;
 use super::worker::{Block, WavefrontWorker};
 use raywright_base::math::{LANES, Vec3};
 use raywright_optics::Rgb;
@@ -14,12 +15,18 @@ impl WavefrontWorker<'_> {
         }
         let Block { sample, spectral, surfaces, media: of, .. } = &mut *self.block;
         for lane in 0..LANES {
-            spectral.waves[lane] = Some(self.waves[sample[lane] as usize].now);
+            spectral.waves[lane] = waves::at(&self.waves, sample[lane]);
             if let Some(flights) = &self.flights {
                 let around = if surfaces.is_front[lane] != 0 { of.here[lane] } else { of.through[lane] };
                 spectral.around[lane] = flights.stacks.get(around).media.dispersion();
             }
         }
+    }
+
+    /// Return whether paths share their wavelengths with known light or with a group. Then each path chooses one of the
+    /// three to sample distances by: the paths of a group must be independent.
+    pub(super) fn shares_waves(&self) -> bool {
+        self.known.is_some() || self.shares()
     }
 
     /// Stage: at surfaces that refract each wavelength in its own direction, paths keep the hero alone.
@@ -55,25 +62,25 @@ impl WavefrontWorker<'_> {
     /// rest of the path.
     fn end_all_but_hero(&mut self, lane: usize, throughput: Vec3) -> Vec3 {
         let block = &mut *self.block;
-        let sample = block.sample[lane] as usize;
         if block.bsdf.flags[lane] & Flags::SINGLE != 0 {
             return throughput;
         }
+        let sample = own(block.sample[lane], self.waves.len() as u32) as usize;
         block.bsdf.flags[lane] |= Flags::SINGLE;
         self.waves[sample].now = self.waves[sample].now.alone();
         let ended = Waves::ended(Rgb::from_array(throughput.as_dvec3().to_array()));
         let drawn =
             self.media.as_mut().map_or(Rgb::ONE, |media| std::mem::replace(&mut media.paths[sample].drawn, Rgb::ONE));
-        // Known light shares its wavelengths with all samples of a number, and each may be the hero.
-        if self.known.is_some() { ended.as_vec3() } else { (ended / drawn[0]).as_vec3() }
+        if self.shares_waves() { ended.as_vec3() } else { (ended / drawn[0]).as_vec3() }
     }
 
     /// The throughput of the path of a lane after the hero was reflected by chance, which the others would have been by
     /// other chances.
     fn mirror(&mut self, lane: usize, by: Rgb, throughput: Vec3) -> Vec3 {
         let mirrored = throughput * by.as_vec3();
-        let Some(media) = self.media.as_mut().filter(|_| self.known.is_none()) else { return mirrored };
-        let drawn = &mut media.paths[self.block.sample[lane] as usize].drawn;
+        let (shares, place) = (self.shares_waves(), own(self.block.sample[lane], self.waves.len() as u32));
+        let Some(media) = self.media.as_mut().filter(|_| !shares) else { return mirrored };
+        let drawn = &mut media.paths[place as usize].drawn;
         let mean = (*drawn * by).mean();
         *drawn = *drawn * by / mean;
         mirrored / mean as f32

@@ -7,7 +7,7 @@ use super::flights::Flights;
 use super::masks::Masks;
 use super::matte::Reflectances;
 use super::media::Media;
-use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue};
+use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue, own};
 use super::waves::{self, PathWaves, WavesBlock};
 use super::ways::Way;
 use crate::known_light::KnownLight;
@@ -31,6 +31,7 @@ pub(super) const BATCH: usize = 4096;
 pub(super) struct WavefrontWorker<'a> {
     pub(super) scene: &'a Scene,
     pub(super) level: Level,
+    pub(super) seed: u64,
     /// That of a camera's ray.
     pub(super) footprint: Footprint,
     pub(super) settings: PathSettings,
@@ -215,6 +216,7 @@ impl<'a> WavefrontWorker<'a> {
         Self {
             scene,
             level,
+            seed: job.seed,
             footprint: job.footprint,
             settings: PathSettings { roulette_depth: settings.roulette_depth.min(roulette::AT_LATEST), ..settings },
             follows: settings.follow != Follow::Nothing,
@@ -390,18 +392,19 @@ impl<'a> WavefrontWorker<'a> {
         self.dim_by_masks(radiance);
     }
 
-    /// Follows the paths of these samples to their ends, and adds what they find.
+    /// Follows the paths of these samples, in groups if these share, to their ends, and adds what they find.
     pub(super) fn follow(
         &mut self,
         samples: &CameraSamples,
         some: Range<usize>,
+        groups: &[u32],
         cancel: &Cancel,
         radiance: &mut [Rgb],
     ) {
         let count = some.len();
         self.start(samples, some.clone());
         if self.scene.plan().needs().waves {
-            waves::draw(samples, some.clone(), self.known, &mut self.waves);
+            waves::draw(samples, some.clone(), (groups, self.seed), self.known, &mut self.waves);
         }
         self.start_in_media(samples, some);
         let Some(mut numbers) = self.samplers.as_ref().map(SamplerColumns::lanes) else { return };
@@ -412,7 +415,11 @@ impl<'a> WavefrontWorker<'a> {
                 }
                 self.bounce(&mut numbers, bounce, count as u32, cancel, radiance);
             }
-            return waves::see(&self.waves, radiance);
+            // Shared radiance is converted after it has been shared.
+            if !self.shares() {
+                waves::see(&self.waves, radiance);
+            }
+            return;
         };
         branches.begin(count);
         let mut found = std::mem::take(&mut self.found);
@@ -489,12 +496,6 @@ fn kind_of(scene: &Scene, primitive: u32) -> usize {
     if kind == Plan::DIFFUSE && !is_matte() { Plan::MIXED } else { kind }
 }
 
-/// The place of a sample in its batch. Shared radiance has numbers of its own, after those of all samples.
-#[inline(always)]
-pub(super) fn own(sample: u32, samples: u32) -> u32 {
-    sample.min(sample.wrapping_sub(samples)).min(sample.wrapping_sub(samples.wrapping_mul(2)))
-}
-
 /// The lanes that have all bits, of the first so many, as bits.
 #[inline]
 pub(super) fn bits(lanes: &[u32; LANES], count: usize) -> u32 {
@@ -543,7 +544,7 @@ impl Worker for WavefrontWorker<'_> {
         let batch = (batch / ways as usize).max(LANES);
         for start in (0..samples.len).step_by(batch) {
             let end = samples.len.min(start + batch);
-            self.follow(samples, start..end, cancel, &mut radiance[start..end]);
+            self.follow(samples, start..end, &[], cancel, &mut radiance[start..end]);
         }
     }
 }
