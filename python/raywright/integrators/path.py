@@ -37,11 +37,11 @@ class Path(CoreIntegrator):
         Only light from one `Diffuse` surface to another is shared; other paths are unaffected. Nothing is
         shared in scenes with motion, masks, nested media or filtered textures. With `Homogeneous` media,
         light is shared from the first scattering of a path in a medium to the next one in the same medium, or
-        to a `Diffuse` surface in it or beyond its end. Point lights and spectral scenes are not shared there.
-        It pays where most light is scattered often, and the mean free path is large compared to a pixel. The
-        grid of patches is shifted for each sample. Errors of neighboring pixels are correlated, and noise is
-        as coarse as a patch. The error estimate accounts for this: its interval is wider, most of all in
-        small pictures.
+        to a `Diffuse` surface in it or beyond its end, unless there are point lights. It pays where most
+        light is scattered often, and the mean free path is large compared to a pixel. The grid of patches is
+        shifted for each sample. Errors of neighboring pixels are correlated, and noise is as coarse as a
+        patch; by wavelength, all pixels have the same color noise. The error estimate accounts for this: its
+        interval is wider, most of all in small pictures.
     guiding : str, optional
         How matt surfaces guide paths: "none", "photons" or "learned". If not given, `render` chooses by a
         pilot, and "none" for small pictures of few samples. Guided paths sample some of their directions
@@ -54,8 +54,8 @@ class Path(CoreIntegrator):
 
         "learned" traces paths from the camera before the first render of a view, guided by photons if there
         are any, and learns where indirect light comes from (Müller, Gross and Novák 2017). It pays where
-        light comes through small openings, such as a keyhole. Elsewhere both cost time. Neither guides paths
-        among media or in spectral scenes.
+        light comes through small openings, such as a keyhole. Elsewhere both cost time. In media, paths are
+        guided at surfaces alone.
 
     Raises
     ------

@@ -25,11 +25,11 @@ _COSTS: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.3, _REUSE: 0.5, _LARGE: 1.3},
     "guiding": {"none": 0.0, "photons": 1.2, "learned": 1.2},
 }
-# Paths in media are longer, so that sharing costs relatively less.
+# Paths in media are longer, so that sharing and guiding cost relatively less.
 _MEDIA = "smoke and haze"
 _COSTS_AMONG: dict[str, dict[Any, float]] = {
     "reuse": {1: 0.0, 2: 0.1, _REUSE: 0.2, _LARGE: 0.5},
-    "guiding": {"none": 0.0, "photons": 0.0, "learned": 0.0},
+    "guiding": {"none": 0.0, "photons": 0.3, "learned": 0.5},
 }
 # An option must improve by this factor, since a pilot may be wrong.
 _BETTER = 0.9
@@ -80,9 +80,6 @@ def followed(
             named[name], why[name] = begun[name], "as the checkpoint has it"
     pixels = camera.width * camera.height
     open_ = [name for name in _PLAIN if name not in why]
-    if open_ and scene.wavelengths is not None:
-        why |= dict.fromkeys(open_, "paths that carry wavelengths neither share nor aim")
-        open_ = []
     if open_ and expected(limits, pixels) * pixels < _SHARE * _core.PILOT:
         why |= dict.fromkeys(open_, "the picture has too few samples to send a pilot")
         open_ = []

@@ -33,10 +33,10 @@ impl Default for Path {
 
 impl Path {
     /// Return how paths are guided in a scene, as far as known without photons and training. Photons require specular
-    /// surfaces, which scenes of the plain variant do not have. Paths in media and spectral paths are never guided.
+    /// surfaces, which scenes of the plain variant do not have.
     pub fn guiding_in(&self, scene: &Scene) -> Guiding {
         let needs = scene.plan().needs();
-        let may_be = self.max_depth.is_none_or(|depth| depth > 1) && !needs.media && !needs.waves;
+        let may_be = self.max_depth.is_none_or(|depth| depth > 1);
         match self.guiding {
             Guiding::Photons if !needs.scattering => Guiding::None,
             guiding if may_be => guiding,

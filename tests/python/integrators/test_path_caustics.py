@@ -169,6 +169,60 @@ def test_the_mean_is_what_it_is_without(name):
     assert (error < 0.01 * free).all()
 
 
+HAZE = rw.media.Homogeneous((0.02, 0.05, 0.1), 0.2)
+
+
+def hazy_box():
+    """A box of haze beside a ball of glass, in a room."""
+    ball = rw.Sphere((0.3, -0.4, 0), 0.4, material=rw.Dielectric(1.5))
+    return room(rw.Box((-0.8, -0.9, -0.5), (-0.3, 0.5, 0.5), material=rw.MediumInterface(HAZE)), ball)
+
+
+def in_haze():
+    scene, camera = SCENES["glass"]()
+    return scene.replace(medium=HAZE), camera
+
+
+DIMMED = {
+    "by wavelength": lambda: room(
+        rw.Sphere((0.2, -0.4, 0), 0.4, material=rw.Dielectric(rw.materials.glasses["N-SF11"]))
+    ),
+    "in haze": in_haze,
+    "in a box of haze": hazy_box,
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "guiding"), [*((name, "photons") for name in DIMMED), ("in a box of haze", "learned")]
+)
+def test_wavelengths_and_media_change_no_mean(name, guiding):
+    scene, camera = DIMMED[name]()
+    means, errors = {}, {}
+    for way in ("none", guiding):
+        few = [render(scene, camera, way, samples=32, seed=s + 100 * len(way)).rgb for s in range(24)]
+        pictures = np.array(few, float).mean(axis=(1, 2))
+        means[way], errors[way] = pictures.mean(axis=0), pictures.std(axis=0, ddof=1) / np.sqrt(24)
+    off = np.abs(means[guiding] - means["none"]) / np.hypot(errors["none"], errors[guiding])
+    # By Student's t with 46 samples, once in 20,000 a channel.
+    assert off.max() < 4.5
+    assert (errors[guiding] < 0.015 * means["none"].max()).all()
+
+
+@pytest.mark.parametrize("name", DIMMED)
+def test_wavelengths_and_media_leave_less_noise(name):
+    scene, camera = DIMMED[name]()
+    # A small lamp, whose caustic paths seldom find.
+    walls, _, *rest = scene.shapes
+    lamp = quad((-0.05, 0.95, -0.05), (0.1, 0, 0), (0, 0, 0.1), material=rw.Diffuse(0.2), emission=300)
+    scene = scene.replace(shapes=[walls, lamp, *rest])
+    free, aimed = (
+        np.mean(np.square(render(scene, camera, way, samples=256).standard_error))
+        for way in ("none", "photons")
+    )
+    # A third or less when it was measured.
+    assert aimed < 0.6 * free
+
+
 def test_a_furnace_stays_one():
     floor = rw.Disk((0, -0.5, 0), (0, 1, 0), 3.0, material=rw.Diffuse(1.0))
     balls = [

@@ -1,5 +1,6 @@
 //! Path guiding toward light through mirrors and glass, and toward light that paths from the camera have found.
 
+mod boundaries;
 mod cells;
 mod lobe;
 mod local_guide;

@@ -1,5 +1,6 @@
 //! Tracing of guiding photons: through specular surfaces to matte ones.
 
+use super::boundaries::{blocked, is_boundary};
 use super::is_matt;
 use super::photon::Photon;
 use raywright_base::math::{DVec3, Hit, Ray};
@@ -55,9 +56,8 @@ pub(super) fn usual(scene: &Scene, photons: &[Photon]) -> f64 {
             arriving.push(brings);
         }
     }
-    let mut occluded = vec![false; rays.len()];
-    scene.occluded(&rays, &mut occluded);
-    arriving.iter().zip(&occluded).filter(|(_, occluded)| !**occluded).map(|(brings, _)| brings).sum::<f64>() / asked
+    let blocked = blocked(scene, &rays);
+    arriving.iter().zip(&blocked).filter(|(_, blocked)| !**blocked).map(|(brings, _)| brings).sum::<f64>() / asked
 }
 
 /// Return radiance over density, averaged over the channels.
@@ -79,7 +79,9 @@ impl Targets {
         // Materials that vary over a surface may be specular somewhere.
         let may_be_sharp = |bsdf: AnyBsdf| !is_matt(&bsdf) || bsdf.roughness() == 0.0;
         let is_target = |shape: u32| {
-            geometry.instances_of(shape).is_some() || scene.material(shape).constant().is_none_or(may_be_sharp)
+            let material = scene.material(shape);
+            let may_be = !material.is_passed() && material.constant().is_none_or(may_be_sharp);
+            geometry.instances_of(shape).is_some() || may_be
         };
         let (mut primitives, mut areas) = (Vec::new(), Vec::new());
         for shape in (0..geometry.shapes() as u32).filter(|&shape| is_target(shape)) {
@@ -200,7 +202,7 @@ impl FlyingPhotons {
                         chain: one.chain,
                     });
                 }
-                if let Some((ray, one)) = one.scattered(&here, self.rays[i].time, surface) {
+                if let Some((ray, one)) = one.scattered(&here, &self.rays[i], surface) {
                     (self.rays[kept], self.flying[kept]) = (ray, one);
                     kept += 1;
                 }
@@ -214,7 +216,11 @@ impl FlyingPhotons {
 
 impl Flying {
     /// Scatter a photon at the surface of an index on its path; return `None` if it ends there.
-    fn scattered(&self, here: &SurfaceInteraction, time: f64, surface: u32) -> Option<(Ray, Self)> {
+    fn scattered(&self, here: &SurfaceInteraction, before: &Ray, surface: u32) -> Option<(Ray, Self)> {
+        let ray = |direction| Ray { time: before.time, ..here.ray_origin().ray(direction) };
+        if is_boundary(here.bsdf()) {
+            return Some((ray(before.direction), *self));
+        }
         let mut sampler = Sampler::new(0, self.number, surface + 1);
         let (next, counts) = branch(here, sampler.one(0), sampler.two(1))?;
         let is_sharp = next.pdf >= SHARP;
@@ -230,12 +236,11 @@ impl Flying {
             return None;
         }
         let link = 2 * u64::from(here.surface().shape) + u64::from(next.is_through);
-        let before = if is_sharp { self.chain } else { 1 };
+        let links = if is_sharp { self.chain } else { 1 };
         // The odd constant nearest to 2⁶⁴ over the golden ratio, as in Knuth's multiplicative hashing.
-        let chain = (before ^ link).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        let chain = (links ^ link).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
         let (sharp, matt) = if is_sharp { (self.sharp + 1, self.matt) } else { (0, self.matt + 1) };
-        let ray = Ray { time, ..here.ray_origin().ray(next.wi) };
-        Some((ray, Self { flux, target: here.position(), chain, sharp, matt, ..*self }))
+        Some((ray(next.wi), Self { flux, target: here.position(), chain, sharp, matt, ..*self }))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Training of a guide by paths from the camera.
 
+use super::boundaries::{blocked, is_boundary};
 use super::photon::Photon;
 use super::photon_tracing::strength;
 use super::{Guide, is_matt};
@@ -77,6 +78,8 @@ struct Vertex {
     /// Index of the surface before it.
     parent: u32,
     is_matt: bool,
+    /// True if it is a mere boundary of media.
+    is_boundary: bool,
     position: DVec3,
     normal: DVec3,
     shape: u32,
@@ -96,6 +99,7 @@ struct Vertex {
 }
 
 /// The ray of a path to its next surface.
+#[derive(Clone, Copy)]
 struct Segment {
     number: u32,
     parent: u32,
@@ -177,6 +181,7 @@ impl Training<'_> {
             let mut vertex = Vertex {
                 parent: segment.parent,
                 is_matt: is_matt(here.bsdf()),
+                is_boundary: is_boundary(here.bsdf()),
                 position: here.ray_origin().ray(here.normal()).origin,
                 normal: here.shading_normal(),
                 shape: here.surface().shape,
@@ -189,6 +194,13 @@ impl Training<'_> {
                 target: DVec3::ZERO,
                 chain: 0,
             };
+            if vertex.is_boundary {
+                vertex.scattered = 1.0;
+                next_rays.push(Ray { time: ray.time, ..here.ray_origin().ray(ray.direction) });
+                next_segments.push(Segment { parent: index, ..*segment });
+                vertices.push(vertex);
+                continue;
+            }
             if !here.bsdf().is_delta()
                 && let Some((shadow, light)) = self.light(&here, ray.time, &mut sampler)
             {
@@ -208,9 +220,8 @@ impl Training<'_> {
             }
             vertices.push(vertex);
         }
-        let mut occluded = vec![false; shadow_rays.len()];
-        scene.occluded(&shadow_rays, &mut occluded);
-        for ((index, [radiance, irradiance]), _) in arriving.into_iter().zip(occluded).filter(|(_, is)| !is) {
+        let blocked = blocked(scene, &shadow_rays);
+        for ((index, [radiance, irradiance]), _) in arriving.into_iter().zip(blocked).filter(|(_, is)| !is) {
             let vertex: &mut Vertex = &mut vertices[index as usize];
             vertex.radiance += radiance;
             vertex.direct += irradiance;
@@ -290,7 +301,10 @@ fn collect(mut surfaces: Vec<Vec<Vertex>>) -> Vec<Visit> {
         for vertex in last {
             if let Some(parent) = before.as_mut().and_then(|before| before.get_mut(vertex.parent as usize)) {
                 parent.arriving = vertex.radiance + vertex.scattered * vertex.arriving;
-                (parent.target, parent.chain) = (vertex.position, vertex.shape.into());
+                (parent.target, parent.chain) = match vertex.is_boundary {
+                    true => (vertex.target, vertex.chain),
+                    false => (vertex.position, vertex.shape.into()),
+                };
             }
             if vertex.is_matt {
                 let Vertex { position, normal, target, chain, direct, throughput, .. } = vertex;
