@@ -221,6 +221,7 @@ impl CompiledScene {
     fn optical_depth<'py>(&self, py: Python<'py>, rays: RayArguments<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (lead, threads, rays) = (&rays.shape, rays.threads, rays.rays()?);
         let out = unwritten::<f64>(py, lead, Some(3))?;
+        let has_media = self.0.plan().needs().media;
         {
             let mut out = out.readwrite();
             let rows: &mut [[f64; 3]] = out.as_slice_mut()?.as_chunks_mut().0;
@@ -230,7 +231,9 @@ impl CompiledScene {
                 rays.part(start, count, |rays, start| {
                     rays.gathered(start, count, |batch, places| {
                         let depths = &mut depths[..batch.len()];
-                        optical_depths(&self.0, batch, depths);
+                        if has_media {
+                            optical_depths(&self.0, batch, depths);
+                        }
                         for (depth, &i) in depths.iter().zip(places) {
                             rows[i] = depth.to_array();
                         }

@@ -34,9 +34,8 @@ pub(super) struct BidirectionalWorker<'a> {
     paths: f64,
     /// True if samples are spread over time.
     moves: bool,
-    /// True if materials need ray widths; and true if there are media.
+    /// True if materials need ray widths.
     widths: bool,
-    has_media: bool,
     /// Wavelengths of samples; `None` for RGB.
     waves: Vec<Waves>,
     now: EyeQueue,
@@ -76,7 +75,6 @@ impl<'a> BidirectionalWorker<'a> {
             paths: f64::from(camera.width()) * f64::from(camera.height()),
             moves: scene.geometry().moves() || camera.uses_time(),
             widths: needs.points.width,
-            has_media: needs.media,
             waves: Vec::new(),
             now: EyeQueue::default(),
             next: EyeQueue::default(),
@@ -177,7 +175,6 @@ impl<'a> BidirectionalWorker<'a> {
             let waves = self.waves.get(number as usize).copied();
             // The choice must be independent of the wavelengths' own: dispersion keeps the first.
             let hero = match waves {
-                _ if !self.has_media => 0,
                 Some(_) => further.hero(),
                 None => ((sample.sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2),
             };
@@ -203,8 +200,7 @@ impl<'a> BidirectionalWorker<'a> {
 
     /// Queue a path that starts along its ray.
     fn take_off(&mut self, path: &mut EyePath, sampler: &mut Sampler) {
-        let way =
-            if self.has_media { depth(sampler.one(Dimensions::of(path.bounce, 0).mask())) } else { f64::INFINITY };
+        let way = depth(sampler.one(Dimensions::of(path.bounce, 0).mask()));
         path.left = LeftDepth { way, start: path.going.ray.t_min, ..path.left };
         self.next.push(&MediumTraversal::alone(self.job.scene, path.waves_with(false)), path);
     }

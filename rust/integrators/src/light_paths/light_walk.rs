@@ -35,8 +35,6 @@ pub(crate) struct LightWalk<'a> {
     camera: Option<&'a dyn Camera>,
     /// True if anything moves, the camera included.
     moves: bool,
-    /// True if there are media.
-    has_media: bool,
     times: Times,
     /// Wavelengths of the paths; `None` for RGB.
     waves: Vec<Waves>,
@@ -179,7 +177,6 @@ impl<'a> LightWalk<'a> {
             limits,
             camera,
             moves: scene.geometry().moves() || camera.is_some_and(|camera| camera.uses_time()),
-            has_media: scene.plan().needs().media,
             times: Times::Drawn,
             waves: Vec::new(),
             now: Queue::default(),
@@ -241,7 +238,6 @@ impl<'a> LightWalk<'a> {
             let waves = self.waves.get(number as usize).copied();
             // The choice must be independent of the wavelengths' own: dispersion keeps the first.
             let hero = match waves {
-                _ if !self.has_media => 0,
                 Some(_) => further.hero(),
                 None => ((sampler.one(EmissionDimensions::HERO) * 3.0) as usize).min(2),
             };
@@ -275,11 +271,7 @@ impl<'a> LightWalk<'a> {
 
     /// Queue a path that starts along its ray.
     fn take_off(&mut self, path: &mut LightPath, samplers: &mut [Sampler]) {
-        let way = if self.has_media {
-            depth(samplers[path.number as usize].one(Dimensions::of(path.bounce).mask()))
-        } else {
-            f64::INFINITY
-        };
+        let way = depth(samplers[path.number as usize].one(Dimensions::of(path.bounce).mask()));
         path.left = LeftDepth { way, start: path.going.ray.t_min, ..path.left };
         path.before = path.flux();
         let course = self.course(path);
@@ -306,9 +298,7 @@ impl<'a> LightWalk<'a> {
                 }
                 SegmentEnd::Ends(end) => end,
             };
-            if self.has_media {
-                visitor.absorb(path.before - path.flux());
-            }
+            visitor.absorb(path.before - path.flux());
             let RaySegmentState { ray, media, .. } = path.going;
             let mut waiting = None;
             let at = match end {

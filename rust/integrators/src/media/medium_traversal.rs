@@ -114,18 +114,13 @@ impl<'a> MediumTraversal<'a> {
 
     /// Return the coefficients of a homogeneous medium that scatters at the path's wavelengths, if it is in one.
     fn even(&self, path: &RaySegmentState) -> Option<Coefficients> {
-        if !self.scatters || self.is_empty() {
+        if !self.scatters {
             return None;
         }
         let (medium, within) = current_medium::around(self.scene, &path.media, &path.ray)?;
         let here = medium.is_even().then(|| medium.at(within.origin))?;
         let here = self.waves.as_ref().map_or(here, |waves| medium.by_waves(here, waves));
         Some(here).filter(|here| !here.scattering.is_black())
-    }
-
-    /// Return whether the scene has no media.
-    fn is_empty(&self) -> bool {
-        !self.scene.plan().needs().media
     }
 
     /// Take a path along its ray to its first hit, and through that if it is no surface for the path.
@@ -140,8 +135,7 @@ impl<'a> MediumTraversal<'a> {
         light: &mut Rgb,
         on_the_way: Option<OnTheWay<'_>>,
     ) -> SegmentEnd {
-        let around = if self.is_empty() { None } else { current_medium::around(self.scene, &path.media, &path.ray) };
-        if let Some((medium, within)) = around {
+        if let Some((medium, within)) = current_medium::around(self.scene, &path.media, &path.ray) {
             let span = [left.start, if hit.is_hit() { hit.t } else { f64::INFINITY }];
             if let (Some(lit), Some(here)) = (on_the_way, self.even(path)) {
                 *light += lit(path, span, (&here, medium.phase()), numbers);

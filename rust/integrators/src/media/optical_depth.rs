@@ -12,9 +12,6 @@ use raywright_scene::media::Content;
 pub fn optical_depths(scene: &Scene, rays: &[Ray], depths: &mut [Rgb]) {
     assert_eq!(rays.len(), depths.len(), "a depth for each ray");
     depths.fill(Rgb::ZERO);
-    if !scene.plan().needs().media {
-        return;
-    }
     let mut media = Vec::new();
     let whole: Vec<Ray> = rays.iter().map(|ray| Ray { t_max: f64::INFINITY, ..*ray }).collect();
     MediumStack::<Filled>::at(scene, &whole, &mut media);

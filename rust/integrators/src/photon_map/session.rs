@@ -86,7 +86,7 @@ const FARTHEST: f64 = 8.0;
 /// Data shared by the workers of a picture.
 pub(super) struct Mapped<'a> {
     job: Job<'a>,
-    /// `None` if there are no lights or no photon would be stored.
+    /// `None` if there are no lights or nothing scatters their light.
     emitters: Option<Emitters<'a>>,
     known: Arc<Known<'a>>,
     seen: Box<dyn Session + 'a>,
@@ -96,10 +96,7 @@ impl<'a> Mapped<'a> {
     pub fn new(job: Job<'a>, recipe: Recipe, radius: Option<f64>, cancel: &Cancel) -> Self {
         let Recipe { sending, nearest, gather, kernel, scale } = recipe;
         let limits = sending.limits;
-        // Direct light is stored in media only.
-        let media = job.scene.plan().needs().media;
-        let least = u32::from(!media);
-        let emitters = job.scene.emitters().filter(|_| limits.max_depth.is_none_or(|depth| depth > least));
+        let emitters = job.scene.emitters().filter(|_| limits.max_depth.is_none_or(|depth| depth > 0));
         let series = Series::new(job, sending);
         let suitable = || series.suitable(emitters.as_ref(), cancel);
         let far = |count: u32| {
