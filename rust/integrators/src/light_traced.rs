@@ -1,8 +1,9 @@
 //! Light tracing.
 
 use super::begin_paths::begin;
-use super::light_paths::{Counting, LightPaths, Limits};
+use super::light_paths::{Counting, LightPaths};
 use super::path_settings::PathSettings;
+use super::wavefront::Limits;
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};

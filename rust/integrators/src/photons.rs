@@ -1,13 +1,15 @@
 //! Photons as data for inspection.
 
-use super::light_paths::{Arrived, Dimensions, LightPath, LightWalk, Limits, Point, Vertex, Visitor};
-use super::media::path_numbers::PathNumbers;
-use raywright_base::math::DVec3;
+use super::path_vertices::Point;
+use super::wavefront::{
+    Arrival, Limits, Subpath, SubpathEmission, SubpathSink, SubpathWavefront, Times, VertexContext,
+};
+use raywright_base::math::{DVec3, Ray};
 use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{EmissionSample, Interaction, Scene};
+use raywright_scene::{EmissionSample, Scene};
 
 /// Light at a surface, or at a point of a medium that absorbs or scatters it.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +71,8 @@ pub fn photons(
         if cancel.is_raised() {
             return seen.found;
         }
-        LightWalk::new(scene, &emitters, limits, None).follow(&mut samplers, cancel, &mut seen);
+        let emission = SubpathEmission { emitters: &emitters, camera: None, times: &Times::Drawn };
+        SubpathWavefront::of_lights(scene, limits).follow_light(&mut samplers, &emission, cancel, &mut seen);
         seen.found.photons.sort_unstable_by_key(|photon| (photon.path, photon.bounces));
         seen.found
     };
@@ -83,7 +86,7 @@ pub fn photons(
     })
 }
 
-/// A visitor that records photons.
+/// A sink that records photons.
 struct PhotonRecorder<'a> {
     scene: &'a Scene,
     /// Index of the first path, and the share of the light per path.
@@ -125,44 +128,35 @@ impl<'a> PhotonRecorder<'a> {
             adrift,
         }
     }
-
-    fn keep(&mut self, photon: Photon, arrived: &Arrived) {
-        self.found.photons.push(Photon {
-            position: arrived.here.position(),
-            direction: arrived.ray.direction,
-            normal: arrived.here.normal(),
-            surface: Some(self.scene.geometry().locate(arrived.hit.primitive)),
-            ..photon
-        });
-    }
 }
 
-impl<'a> Visitor<'a> for PhotonRecorder<'a> {
-    fn set_out(&mut self, path: &LightPath, _: &EmissionSample) {
-        self.begin(path.number, path.flux());
+impl<'a> SubpathSink<'a> for PhotonRecorder<'a> {
+    fn set_out(&mut self, path: &Subpath, _: &EmissionSample) {
+        self.begin(path.number, path.beta);
     }
 
-    fn meet(&mut self, at: &Vertex<'a>, path: &LightPath, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
-        let last = [path.is_sharp, path.is_adrift];
-        match &at.point {
-            Point::Surface { arrived, .. } => {
-                let photon = self.photon(path.number, path.bounce - 1, last, path.flux());
-                self.keep(photon, arrived);
-            }
-            Point::Medium { here, medium, came, .. } => {
-                let flux = *came * medium.extinction / path.going.weights.drawn.mean();
-                let photon = self.photon(path.number, path.bounce - 1, last, flux);
-                self.found.photons.push(Photon { position: here.position, direction: here.before, ..photon });
-            }
-        }
+    fn meet(&mut self, at: &Arrival<'_, 'a>, path: &Subpath, _: &mut VertexContext<'_>) {
+        let is_in_medium = at.is_in_medium();
+        let flux = match is_in_medium.then(|| &at.vertex().point) {
+            Some(Point::Medium { medium, came, .. }) => *came * medium.extinction,
+            _ => path.beta,
+        };
+        let photon = self.photon(path.number, path.bounce - 1, [path.is_sharp, path.is_adrift], flux);
+        self.found.photons.push(Photon {
+            position: at.origin.position(),
+            direction: at.before,
+            normal: at.normal,
+            surface: (!is_in_medium).then(|| self.scene.geometry().locate(at.primitive)),
+            ..photon
+        });
     }
 
     fn absorb(&mut self, flux: Rgb) {
         self.found.absorbed += flux * self.share;
     }
 
-    fn leave(&mut self, path: &LightPath) {
-        self.found.escaped += path.flux() * self.share;
+    fn leave(&mut self, path: &Subpath, _: &Ray) {
+        self.found.escaped += path.beta * self.share;
     }
 }
 

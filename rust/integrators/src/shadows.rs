@@ -9,17 +9,10 @@ use raywright_scene::{Scene, opacity_at};
 pub(super) struct Shadows {
     rays: RayQueue,
     arriving: Vec<(u32, Rgb)>,
-    occluded: Vec<bool>,
     hits: Vec<Hit>,
 }
 
 impl Shadows {
-    /// Return whether every hit occludes in a scene.
-    pub fn are_plain(scene: &Scene) -> bool {
-        let needs = scene.plan().needs();
-        !(needs.media || needs.nested || needs.masks)
-    }
-
     /// Remove all rays.
     pub fn clear(&mut self) {
         self.rays.clear();
@@ -36,17 +29,6 @@ impl Shadows {
     #[inline]
     pub fn bring(&mut self, sample: u32, arriving: Rgb) {
         self.arriving.push((sample, arriving));
-    }
-
-    /// Add the contributions of unoccluded rays, in scenes where every hit occludes.
-    pub fn add_unblocked(&mut self, scene: &Scene, radiance: &mut [Rgb]) {
-        self.occluded.resize(self.rays.len(), false);
-        scene.occluded_queue(&mut self.rays, &mut self.occluded);
-        for (&(sample, arriving), &occluded) in self.arriving.iter().zip(&self.occluded) {
-            if !occluded {
-                radiance[sample as usize] += arriving;
-            }
-        }
     }
 
     /// Add the contributions of rays through masks, attenuated by their opacity.

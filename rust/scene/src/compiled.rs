@@ -198,14 +198,6 @@ impl Scene {
         }
     }
 
-    /// Tests each ray of a queue for any hit.
-    pub fn occluded_queue(&self, rays: &mut RayQueue, occluded: &mut [bool]) {
-        match self.accelerator.by_columns() {
-            Some(tree) => tree.occluded(&rays.columns(), occluded),
-            None => self.accelerator.occluded(rays.rows(), occluded),
-        }
-    }
-
     /// Every hit of each ray.
     pub fn crossings(&self, rays: &[Ray]) -> Crossings {
         self.accelerator.crossings(rays)
@@ -508,8 +500,7 @@ mod tests {
             brute.occluded(&rays, &mut occluded);
             let (mut hits, mut any) = (vec![Hit::MISS; rays.len()], vec![false; rays.len()]);
             scene.intersect_queue(&mut queue, &mut hits);
-            scene.occluded_queue(&mut queue, &mut any);
-            assert!(hits == wanted && any == occluded, "{balls}");
+            assert!(hits == wanted, "{balls}");
             scene.intersect(&rays, &mut hits);
             scene.occluded(&rays, &mut any);
             assert!(hits == wanted && any == occluded, "{balls}");

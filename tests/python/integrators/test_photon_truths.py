@@ -76,8 +76,8 @@ def test_light_in_a_closed_room_is_its_series():
         told.append([shares.sum(), shares[found.bounces > 0].sum(), third])
     mean, error = np.mean(told, 0), np.std(told, 0, ddof=1) / math.sqrt(8)
     assert (error < 0.002 * mean).all()
-    # Roulette begins later than at the third wall: that is exact.
-    assert abs(mean[2] - 0.147) < 1e-9
+    # Roulette begins later than at the third wall: that is exact, but for two factors in float32.
+    assert abs(mean[2] / 0.147 - 1) < 2 * 2**-24
     assert (np.abs(mean[:2] - [3.33333333333333, 2.33333333333333]) < 3 * error[:2]).all(), (mean, error)
 
 

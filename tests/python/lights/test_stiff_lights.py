@@ -222,3 +222,16 @@ def test_a_room_is_as_bright_at_any_size(kind, exponent):
         )
         assert usual.mean() > 1e-3
         np.testing.assert_allclose(other.mean(), usual.mean(), rtol=0.04)
+
+
+@pytest.mark.parametrize("exponent", [-100, 100])
+@pytest.mark.parametrize("kind", ["a square", "a ball"])
+def test_paths_from_lights_know_no_size(kind, exponent):
+    """Powers of two scale every number exactly but those in float32, which must not overflow."""
+    for way in (rw.LightTraced(max_depth=3), rw.Bidirectional(max_depth=3), rw.PhotonMap(2000, max_depth=2)):
+        usual, other = (
+            rw.render(*lamps(kind, scale), way, samples=8, progress=False).rgb
+            for scale in (1.0, 2.0**exponent)
+        )
+        assert usual.mean() > 1e-3
+        np.testing.assert_allclose(other.mean(), usual.mean(), rtol=0.04)

@@ -191,7 +191,7 @@ def test_only_the_ratio_of_indices_counts(kind, integrator):
     # with thicknesses of films multiplied by it: equal random numbers make the same picture.
     # Some stages are in float32, where a sample may pass an edge on its other side; none of these does.
     sampler = rw.rendering.Independent() if isinstance(integrator, rw.Path) else None
-    how = {"samples": 16, "seed": 3, "sampler": sampler, "progress": False}
+    how = {"samples": 64, "seed": 3, "sampler": sampler, "progress": False}
 
     def picture(of, index):
         room = rw.Box((-3, -3, -3), (3, 3, 3), material=BLACK)

@@ -118,14 +118,19 @@ def test_strength_does_not_matter(box, strength):
     assert abs(value - 2) < 0.02
 
 
-def test_a_camera_ten_million_away_sees_what_is_there():
+@pytest.mark.parametrize("integrator", [rw.Path(), rw.Bidirectional()], ids=["path", "bidirectional"])
+def test_a_camera_ten_million_away_sees_what_is_there(integrator):
     far = 1e7
     ball = rw.Sphere((0, 0, 0), 1, material=rw.Diffuse(0), emission=3)
     fov = math.degrees(2 * math.atan(2 / far))
     camera = rw.Camera((0, 0, far), (0, 0, 0), fov=fov, width=64, height=64)
-    image = rw.render(rw.Scene(ball), camera, samples=16, progress=False)
+    image = rw.render(rw.Scene(ball), camera, integrator, samples=16, progress=False)
     # A disk of radius 1 in a window of side 4.
     assert_mean(image, 3 * math.pi / 16, most=0.01, slack=1e-5)
+    # Its edge is as sharp as the pixels.
+    radius = np.hypot(*np.meshgrid(*[(np.arange(64) + 0.5 - 32) / 16] * 2))
+    assert not image.rgb[radius > 1.1].any()
+    np.testing.assert_allclose(image.rgb[radius < 0.9], 3)
 
 
 @pytest.mark.parametrize("gap", [1e-6, 1e-3])

@@ -1,8 +1,8 @@
 //! Stored vertices of light paths.
 
-use crate::light_paths::{Dimensions, LightEnd, LightEnds, LightPath, Onward, Vertex, Visitor};
-use crate::media::path_numbers::PathNumbers;
-use raywright_base::workers::Cancel;
+use crate::light_paths::{LightEnd, LightEnds};
+use crate::path_vertices::{Onward, Vertex};
+use crate::wavefront::{Arrival, Subpath, SubpathSink, VertexContext};
 use raywright_optics::Rgb;
 use raywright_scene::EmissionSample;
 
@@ -57,29 +57,22 @@ impl<'a> LightVertices<'a> {
     }
 }
 
-/// A visit borrows its vertex, but the data in it lives as long as the scene.
-impl<'a> Visitor<'a> for LightVertices<'a> {
-    fn set_out(&mut self, path: &LightPath, light: &EmissionSample) {
+impl<'a> SubpathSink<'a> for LightVertices<'a> {
+    fn set_out(&mut self, path: &Subpath, light: &EmissionSample) {
         self.ends.set_out(path.number, light);
     }
 
-    fn meet(
-        &mut self,
-        at: &Vertex<'a>,
-        path: &LightPath,
-        numbers: &mut PathNumbers,
-        dimensions: Dimensions,
-        _: &Cancel,
-    ) {
+    fn meet(&mut self, at: &Arrival<'_, 'a>, path: &Subpath, context: &mut VertexContext<'_>) {
+        let at = at.vertex();
         self.ends.arrive(path.number, at);
         let odds = Self::ALL / f64::from(path.bounce);
-        if at.is_single() || odds < 1.0 && numbers.one(dimensions.keeping()) >= odds {
+        if at.is_single() || odds < 1.0 && context.one(context.dimensions.storing()) >= odds {
             return;
         }
         let last = &mut self.last[path.number as usize];
         let vertex = LightVertex {
             at: at.clone(),
-            flux: path.flux() / odds.min(1.0),
+            flux: path.beta / odds.min(1.0),
             again: path.again,
             bounce: path.bounce,
             single: path.single,
@@ -90,7 +83,7 @@ impl<'a> Visitor<'a> for LightVertices<'a> {
         self.vertices.push(vertex);
     }
 
-    fn go_on(&mut self, at: &Vertex<'a>, path: &LightPath, next: &Onward) {
-        self.ends.go_on(path.number, at, next);
+    fn go_on(&mut self, at: &Arrival<'_, 'a>, path: &Subpath, next: &Onward) {
+        self.ends.go_on(path.number, at.vertex(), next);
     }
 }

@@ -1,6 +1,7 @@
 //! Bidirectional path tracing and vertex merging.
 
-mod camera_paths;
+mod camera_end;
+mod camera_subpaths;
 mod connections;
 mod light_vertices;
 #[cfg(test)]
@@ -10,7 +11,8 @@ mod worker;
 
 pub use vertex_merging::Merge;
 
-use super::light_paths::{Counting, LightPaths, Limits, emitters};
+use super::light_paths::{Counting, LightPaths, emitters};
+use super::wavefront::Limits;
 use super::{Integrator, Job, LightWorker, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Emitters, Scene};

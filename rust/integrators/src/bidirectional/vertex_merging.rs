@@ -1,12 +1,11 @@
 //! Vertex merging of camera paths with photons.
 
-use super::camera_paths::EyePath;
+use super::camera_end::CameraEnd;
 use crate::Job;
-use crate::light_paths::{
-    Arrived, Dimensions, LightEnds, LightPath, Limits, Onward, Partial, Vertex, Visitor, of_merged,
-};
-use crate::media::path_numbers::PathNumbers;
+use crate::light_paths::{LightEnds, Partial, of_merged};
+use crate::path_vertices::{Arrived, Onward, Vertex};
 use crate::photon_map::{HashedGrid, Kernel, MapSchedule, PhotonCount, Sending, Series, StoredPhoton, cover, flown};
+use crate::wavefront::{Arrival, Limits, Subpath, SubpathSink, VertexContext};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
@@ -118,7 +117,8 @@ impl<'a> Merging<'a> {
     pub fn found(
         &self,
         map: &MergeMap,
-        (at, arrived, path): (&Vertex, &Arrived, &EyePath),
+        (at, arrived): (&Vertex, &Arrived),
+        (path, end): (&Subpath, &CameraEnd),
         bounces: Option<u32>,
         alone: Option<u32>,
     ) -> Rgb {
@@ -139,7 +139,7 @@ impl<'a> Merging<'a> {
             }
             let weight = match alone {
                 Some(_) => 1.0,
-                None => of_merged((light, back), (&path.partial, at.light_back_pdf(towards)), path.disk),
+                None => of_merged((light, back), (&end.partial, at.light_back_pdf(towards)), end.disk),
             };
             sum += scattered
                 * photon.power(path.has_gamut_excess, path.single)
@@ -152,28 +152,29 @@ impl<'a> Merging<'a> {
     }
 }
 
-/// A visitor that stores indirect photons at matte surfaces.
+/// A sink that stores indirect photons at matte surfaces.
 struct Keeping<'a> {
     share: f64,
     ends: LightEnds<'a>,
     kept: Vec<(StoredPhoton, Partial)>,
 }
 
-impl<'a> Visitor<'a> for Keeping<'a> {
-    fn set_out(&mut self, path: &LightPath, light: &EmissionSample) {
+impl<'a> SubpathSink<'a> for Keeping<'a> {
+    fn set_out(&mut self, path: &Subpath, light: &EmissionSample) {
         self.ends.set_out(path.number, light);
     }
 
-    fn meet(&mut self, at: &Vertex<'a>, path: &LightPath, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
+    fn meet(&mut self, at: &Arrival<'_, 'a>, path: &Subpath, _: &mut VertexContext<'_>) {
+        let at = at.vertex();
         self.ends.arrive(path.number, at);
         if let (Some(arrived), true) = (at.matte(), path.bounce > 1) {
-            let power = (path.flux() * self.share, path.single);
+            let power = (path.beta * self.share, path.single);
             let photon = StoredPhoton::arrived(arrived, power, path.bounce - 1, path.again);
             self.kept.push((photon, self.ends.end(path.number).partial()));
         }
     }
 
-    fn go_on(&mut self, at: &Vertex<'a>, path: &LightPath, next: &Onward) {
-        self.ends.go_on(path.number, at, next);
+    fn go_on(&mut self, at: &Arrival<'_, 'a>, path: &Subpath, next: &Onward) {
+        self.ends.go_on(path.number, at.vertex(), next);
     }
 }

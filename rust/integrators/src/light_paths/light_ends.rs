@@ -1,8 +1,7 @@
 //! MIS partials of light paths.
 
-use super::adjoint::Onward;
 use super::mis_weights::Partial;
-use super::vertex::{ConnectedVertex, Vertex};
+use crate::path_vertices::{ConnectedVertex, Onward, Vertex};
 use raywright_scene::{EmissionDensity, EmissionSample, Emitters};
 
 /// MIS partials of each path of a batch.

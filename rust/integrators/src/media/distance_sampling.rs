@@ -38,6 +38,13 @@ pub(crate) struct Collision {
     pub came: Rgb,
 }
 
+impl Collision {
+    /// Multiply the path weight.
+    pub fn times(self, by: f64) -> Self {
+        Self { came: self.came * by, ..self }
+    }
+}
+
 impl MediumSegment<'_> {
     /// Return the world length between two `t`.
     #[inline]

@@ -48,17 +48,17 @@ pub(crate) enum TraversalEnd {
 
 /// A path's way to its next scattering event in a medium.
 #[derive(Clone, Copy)]
-pub(crate) struct LeftDepth {
+struct LeftDepth {
     /// The wavelength that samples distances.
-    pub hero: usize,
+    hero: usize,
     /// Its optical depth that is left.
-    pub way: f64,
+    way: f64,
     /// `t` at the start of the current medium.
-    pub start: f64,
+    start: f64,
 }
 
 /// The result of a step.
-pub(crate) enum SegmentEnd {
+enum SegmentEnd {
     /// The path goes on along its ray.
     Passes,
     /// Its weight is zero.
@@ -103,7 +103,7 @@ impl<'a> MediumTraversal<'a> {
 
     /// Return the ray to the first hit that a path needs to know of: not beyond its scattering event in a homogeneous
     /// medium.
-    pub fn next_ray(&self, path: &RaySegmentState, left: &LeftDepth, is_lit: bool) -> Ray {
+    fn next_ray(&self, path: &RaySegmentState, left: &LeftDepth, is_lit: bool) -> Ray {
         let mut ray = path.ray;
         if let Some(here) = self.even(path).filter(|here| here.emission.is_black() && !is_lit) {
             let reach = left.start + left.way / here.extinction[left.hero] * (1.0 + 1e-12);
@@ -125,7 +125,7 @@ impl<'a> MediumTraversal<'a> {
 
     /// Take a path along its ray to its first hit, and through that if it is no surface for the path.
     #[allow(clippy::too_many_arguments)]
-    pub fn step(
+    fn step(
         &self,
         path: &mut RaySegmentState,
         left: &mut LeftDepth,

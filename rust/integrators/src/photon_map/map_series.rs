@@ -5,7 +5,7 @@ use super::photon_tracing::{PhotonPass, fly};
 use super::radius::{Radii, first};
 use crate::Job;
 use crate::common_numbers::{COMMON_TIME, COMMON_WAVES, spread};
-use crate::light_paths::Limits;
+use crate::wavefront::Limits;
 use raywright_base::math::DVec3;
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;

@@ -26,7 +26,7 @@ pub(super) use map_series::{MapSchedule, Sending, Series};
 pub(super) use photon::StoredPhoton;
 pub(super) use photon_tracing::flown;
 
-use super::light_paths::Limits;
+use super::wavefront::Limits;
 use super::{Integrator, Job, Session};
 use raywright_base::workers::Cancel;
 use raywright_scene::{Camera, Scene};

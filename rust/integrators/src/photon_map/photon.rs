@@ -1,6 +1,6 @@
 //! Compact storage of surface photons.
 
-use crate::light_paths::Arrived;
+use crate::path_vertices::Arrived;
 use crate::shadows::opacity;
 use raywright_base::math::{DVec3, Vec3};
 use raywright_optics::spectra::Waves;

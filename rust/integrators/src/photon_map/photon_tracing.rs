@@ -4,8 +4,10 @@ use super::map_cache::PhotonCount;
 use super::photon::StoredPhoton;
 use super::photon_lookup::Places;
 use super::volume_photon::{VolumeIndex, VolumePhoton};
-use crate::light_paths::{Dimensions, LightPath, LightWalk, Limits, Point, Times, Vertex, Visitor};
-use crate::media::path_numbers::PathNumbers;
+use crate::path_vertices::Point;
+use crate::wavefront::{
+    Arrival, Limits, Subpath, SubpathEmission, SubpathSink, SubpathWavefront, Times, VertexContext,
+};
 use raywright_base::parallel;
 use raywright_base::sampling::Sampler;
 use raywright_base::workers::Cancel;
@@ -69,16 +71,16 @@ pub(super) struct Flown {
 }
 
 /// Trace the paths of a flight in chunks of some thousands, on all threads of the current pool or on this one alone,
-/// with one visitor per chunk. Results depend on the flight alone. After a cancellation they are incomplete and must be
+/// with one sink per chunk. Results depend on the flight alone. After a cancellation they are incomplete and must be
 /// discarded.
-pub(crate) fn flown<'a, V: Visitor<'a> + Send>(
+pub(crate) fn flown<'a, S: SubpathSink<'a> + Send>(
     scene: &'a Scene,
     emitters: &'a Emitters<'a>,
     camera: &'a dyn Camera,
     flight: &PhotonPass,
     (alone, cancel): (bool, &Cancel),
-    visitor: impl Fn(usize) -> V + Sync,
-) -> Vec<V> {
+    sink: impl Fn(usize) -> S + Sync,
+) -> Vec<S> {
     /// Number of paths per chunk.
     const TOGETHER: u32 = 4096;
     /// Light paths use pixel indices beyond those of any picture.
@@ -87,14 +89,15 @@ pub(crate) fn flown<'a, V: Visitor<'a> + Send>(
         let paths = chunk * TOGETHER..flight.paths.min((chunk + 1).saturating_mul(TOGETHER));
         let mut samplers: Vec<Sampler> =
             paths.map(|path| Sampler::new(flight.seed, BEYOND | path, flight.number)).collect();
-        let mut visitor = visitor(samplers.len());
+        let mut sink = sink(samplers.len());
         if !cancel.is_raised() {
-            let mut walk = LightWalk::new(scene, emitters, flight.limits, Some(camera));
-            walk.set_times(flight.time.map_or(Times::Drawn, Times::All));
-            walk.set_waves(flight.waves.into_iter().flat_map(|waves| std::iter::repeat_n(waves, samplers.len())));
-            walk.follow(&mut samplers, cancel, &mut visitor);
+            let mut wavefront = SubpathWavefront::of_lights(scene, flight.limits);
+            wavefront.set_waves(flight.waves.into_iter().flat_map(|waves| std::iter::repeat_n(waves, samplers.len())));
+            let times = flight.time.map_or(Times::Drawn, Times::All);
+            let emission = SubpathEmission { emitters, camera: Some(camera), times: &times };
+            wavefront.follow_light(&mut samplers, &emission, cancel, &mut sink);
         }
-        visitor
+        sink
     };
     let chunks = flight.paths.div_ceil(TOGETHER);
     if alone { (0..chunks).map(follow).collect() } else { parallel::map(chunks as usize, |chunk| follow(chunk as u32)) }
@@ -121,7 +124,7 @@ pub(super) fn fly<'a>(
     })
 }
 
-/// A visitor that stores photons at matte surfaces and scattering events in media.
+/// A sink that stores photons at matte surfaces and scattering events in media.
 struct Storing {
     share: f64,
     caustic: bool,
@@ -130,23 +133,28 @@ struct Storing {
     stored: Flown,
 }
 
-impl<'a> Visitor<'a> for Storing {
-    fn set_out(&mut self, path: &LightPath, _: &EmissionSample) {
+impl<'a> SubpathSink<'a> for Storing {
+    fn set_out(&mut self, path: &Subpath, _: &EmissionSample) {
         self.chains.resize(path.number as usize + 1, true);
     }
 
-    fn meet(&mut self, at: &Vertex<'a>, path: &LightPath, _: &mut PathNumbers, _: Dimensions, _: &Cancel) {
+    fn meet(&mut self, at: &Arrival<'_, 'a>, path: &Subpath, _: &mut VertexContext<'_>) {
         let bounces = path.bounce - 1;
         if bounces > 0 {
             self.chains[path.number as usize] &= path.is_sharp;
         }
+        let is_in_medium = at.is_in_medium();
+        // Light at the first surface is direct, and found by light sampling.
+        if !is_in_medium && bounces == 0 {
+            return;
+        }
+        let at = at.vertex();
         if let Point::Medium { here, came, .. } = &at.point {
-            let power = (*came * (self.share / path.going.weights.drawn.mean()), path.single);
+            let power = (*came * self.share, path.single);
             self.stored.among.push(VolumePhoton::new(here, power, path.again, bounces, &at.media));
         }
-        // Light at the first surface is direct, and found by light sampling.
-        if let (Some(arrived), true) = (at.matte(), bounces > 0) {
-            let power = (path.flux() * self.share, path.single);
+        if let Some(arrived) = at.matte() {
+            let power = (path.beta * self.share, path.single);
             let photon = StoredPhoton::arrived(arrived, power, bounces, path.again);
             let is_sharp = self.chains[path.number as usize];
             self.stored.surfaces[usize::from(!(self.caustic && is_sharp))].push(photon);

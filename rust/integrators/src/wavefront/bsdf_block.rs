@@ -192,13 +192,6 @@ impl<'a> BsdfBlock<'a> {
             self.asks_each[lane] = plan.asks_each(|| bsdf.roughness());
             let normal = if bsdf.transmits() { DVec3::ZERO } else { self.frames.normal(surfaces, lane).0 };
             self.normal.set(lane, normal.as_vec3());
-            let again = bsdf.repeat_correction();
-            if again != Rgb::ONE {
-                if self.flags[lane] & Flags::HAS_GAMUT_EXCESS != 0 {
-                    throughput.set(lane, throughput.get(lane) * again.as_vec3());
-                }
-                self.flags[lane] |= Flags::HAS_GAMUT_EXCESS;
-            }
             let at = (surfaces.position.get(lane), bsdf);
             self.guided.arrive(lane, at, (self.scale[lane], chance[lane]), throughput);
             self.asks[lane] &= !self.guided.ends[lane];
@@ -327,6 +320,21 @@ impl<'a> BsdfBlock<'a> {
     /// Return whether the path of a lane has met a surface with a reflectance above 1 in a channel.
     pub fn has_gamut_excess(&self, lane: usize) -> bool {
         self.flags[lane] & Flags::HAS_GAMUT_EXCESS != 0
+    }
+
+    /// Return whether shading and geometric normal of a lane are equal.
+    pub fn is_flat(&self, lane: usize) -> bool {
+        self.frames.is_flat(lane)
+    }
+
+    /// Return the sample of a lane.
+    pub fn drawn(&self, lane: usize) -> Option<BsdfSample> {
+        self.drawn.get(lane)
+    }
+
+    /// Replace the sample of a lane.
+    pub fn set_drawn(&mut self, lane: usize, drawn: Option<BsdfSample>) {
+        self.drawn.set(lane, drawn);
     }
 
     /// Return whether a direction was drawn in a lane.

@@ -1,22 +1,25 @@
 //! The stages that take sixteen paths from surfaces of any kind to their next rays.
 
 use super::matte;
-use super::queues::{PathLanes, own};
+use super::queues::{Flags, PathLanes, own};
 use super::ways::Way;
 use super::worker::{WavefrontWorker, bits};
 use crate::dimensions::Dimensions;
 use crate::path_settings::stratum;
 use crate::resampling::{ResampledLanes, resample};
 use raywright_base::math::{LANES, Ray, SingleLanes, VectorLanes};
-use raywright_base::sampling::SamplerLanes;
+use raywright_base::sampling::{Pairs, SamplerLanes};
 use raywright_base::timing::{Part, timed};
-use raywright_optics::{Rgb, RgbLanes};
+use raywright_optics::{Bsdf, Rgb, RgbLanes};
 use raywright_scene::{LightBlock, ReceiverBlock};
 
 impl WavefrontWorker<'_> {
     /// Takes sixteen paths from surfaces of any kind to their next rays.
     pub(super) fn leave_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32, radiance: &mut [Rgb]) {
-        timed(Part::Scattering, || self.evaluate_materials(numbers, bounce));
+        timed(Part::Scattering, || {
+            self.evaluate_materials(numbers, bounce);
+            self.correct_repeats();
+        });
         self.look_up_light(bounce, radiance);
         if bounce < 2 && self.sharing.is_some() {
             for lane in 0..self.block.surfaces.count {
@@ -43,7 +46,7 @@ impl WavefrontWorker<'_> {
     }
 
     /// Stage: materials are asked how sixteen surfaces scatter.
-    fn evaluate_materials(&mut self, numbers: &SamplerLanes, bounce: u32) {
+    pub(super) fn evaluate_materials(&mut self, numbers: &SamplerLanes, bounce: u32) {
         let block = &mut *self.block;
         let mut chance = [0.0; LANES];
         if self.extra.aimed && block.bsdf.guided.aimed.iter().any(|&aimed| aimed > 1.0) {
@@ -55,6 +58,27 @@ impl WavefrontWorker<'_> {
         let surfaces = &block.surfaces;
         block.bsdf.evaluate_materials(self.level, self.scene, met, surfaces, around, &chance, throughput);
         self.end_wavelengths();
+    }
+
+    /// Stage: paths that have met a reflectance above 1 have the remaining share of the next one.
+    pub(super) fn correct_repeats(&mut self) {
+        let block = &mut *self.block;
+        for lane in 0..block.surfaces.count {
+            let again = block.bsdf.get(lane).repeat_correction();
+            if again != Rgb::ONE {
+                if block.bsdf.has_gamut_excess(lane) {
+                    block.throughput.set(lane, block.throughput.get(lane) * again.as_vec3());
+                }
+                block.bsdf.flags[lane] |= Flags::HAS_GAMUT_EXCESS;
+            }
+        }
+    }
+
+    /// Stage: directions are drawn from sixteen BSDFs.
+    pub(super) fn sample_bsdfs(&mut self, (choice, u): (&mut [f64; LANES], &Pairs), way: Option<&Way>) {
+        let block = &mut *self.block;
+        let next = &mut block.next;
+        block.bsdf.sample(self.level, &block.surfaces, &block.throughput, (choice, u), way, next);
     }
 
     /// Stage: draws one of several light samples for sixteen surfaces, stratified over the lights, and queues its
@@ -128,13 +152,16 @@ impl WavefrontWorker<'_> {
     /// Stage: sixteen paths go on from surfaces of any kind, in one of several ways if there are any, unless roulette
     /// ends them.
     pub(super) fn scatter_from_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32, way: Option<&Way>) {
-        let (plays, dimensions) = (self.plays(bounce), self.dimensions(bounce));
-        let (level, block) = (self.level, &mut *self.block);
+        let dimensions = self.dimensions(bounce).map(Dimensions::scattering_choice);
         let (mut choice, mut single) = ([0.0; LANES], [[0.0; LANES]; 2]);
-        numbers.choices_and_pairs(level, &dimensions.map(Dimensions::scattering_choice), &mut choice, &mut single);
-        let u = single.map(|u| u.map(f64::from));
-        let next = &mut block.next;
-        block.bsdf.sample(level, &block.surfaces, &block.throughput, (&mut choice, &u), way, next);
+        numbers.choices_and_pairs(self.level, &dimensions, &mut choice, &mut single);
+        self.sample_bsdfs((&mut choice, &single.map(|u| u.map(f64::from))), way);
+        self.go_on_from_any(numbers, bounce, samples, way);
+    }
+
+    /// Stage: sixteen paths go on in directions that were drawn, unless roulette ends them.
+    pub(super) fn go_on_from_any(&mut self, numbers: &SamplerLanes, bounce: u32, samples: u32, way: Option<&Way>) {
+        let (plays, dimensions, level) = (self.plays(bounce), self.dimensions(bounce), self.level);
         self.part_wavelengths();
         if way.is_some() {
             self.weigh_ways(bounce);

@@ -190,7 +190,7 @@ impl<'a> Flights<'a> {
             next: FlightQueue::new(extra),
             primitives: Vec::new(),
             hits: Vec::new(),
-            has_hits: needs.instances || needs.motion,
+            has_hits: needs.instances || needs.motion || scene.geometry().is_extreme(),
             which: Vec::new(),
             surfaces: SurfaceBlock::NONE,
             known: vec![None; KNOWN],

@@ -69,13 +69,17 @@ impl WavefrontWorker<'_> {
 
     /// Stage: what arrives along shadow rays that something blocks is dimmed by the masks on the way, and added.
     pub(super) fn dim_by_masks(&mut self, radiance: &mut [Rgb]) {
-        let (Some(Masks { shadows, .. }), queue) = (&mut self.masks, &self.shadows) else { return };
+        let Some(mut shadows) = self.masks.as_mut().map(|masks| std::mem::take(&mut masks.shadows)) else { return };
+        let queue = &self.shadows;
         let [r, g, b] = &queue.arriving;
         shadows.clear();
         for i in (0..queue.rays.len).filter(|&i| self.is_occluded[i]) {
             shadows.push(&queue.rays.get(i));
-            shadows.bring(queue.sample[i], Rgb::new(r[i].into(), g[i].into(), b[i].into()));
+            shadows.bring(self.receiver(i) as u32, Rgb::new(r[i].into(), g[i].into(), b[i].into()));
         }
         shadows.add_through(self.scene, radiance);
+        if let Some(masks) = &mut self.masks {
+            masks.shadows = shadows;
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::flights::{Flight, FlightQueue};
 use super::media_sharing::MediaSharing;
 use super::queues::Extra;
-use crate::media::distance_sampling::MediumSegment;
+use crate::media::distance_sampling::{Collision, MediumSegment};
 use crate::media::equiangular::{PointLights, ScatteringSpan};
 use crate::media::path_numbers::FurtherNumbers;
 use crate::media::path_reuse::can_share;
@@ -59,10 +59,17 @@ pub(super) struct MediumScattering {
     /// Unit direction of incidence.
     pub before: DVec3,
     pub phase: Phase,
-    /// Coefficients of a homogeneous medium.
-    pub even: Option<Coefficients>,
+    /// The collision on the flight of the path.
+    pub collision: Collision,
     /// True at the second vertex that the path shares.
     pub is_second: bool,
+}
+
+impl MediumScattering {
+    /// Return the coefficients of a homogeneous medium.
+    pub fn even(&self) -> Option<Coefficients> {
+        self.collision.density.map(|_| self.collision.here)
+    }
 }
 
 impl PathMedia {

@@ -31,7 +31,7 @@ impl WavefrontWorker<'_> {
                 seconds |= 1 << lane;
                 block.share(lane, samples);
             } else if let (None, Some(here), false) =
-                (vertices.first, at.even, block.bsdf.flags[lane] & (Flags::HAS_GAMUT_EXCESS | Flags::SINGLE) != 0)
+                (vertices.first, at.even(), block.bsdf.flags[lane] & (Flags::HAS_GAMUT_EXCESS | Flags::SINGLE) != 0)
             {
                 let PathMedia { media: number, drawn, .. } = media.paths[sample as usize];
                 let throughput = Rgb::from_array(block.throughput.get(lane).as_dvec3().to_array());

@@ -5,20 +5,18 @@ use super::media::{Media, MediumScattering, PathMedia};
 use super::medium_stacks::MediumStacks;
 use super::queues::{PathQueue, own};
 use super::waves::PathWaves;
-use super::worker::WavefrontWorker;
-use crate::CameraSamples;
-use crate::dimensions::Dimensions;
+use super::worker::{End, WavefrontWorker};
+use crate::dimensions::{Dimensions, EmissionDimensions};
 use crate::media::current_medium::Filled;
 use crate::media::equiangular::ScatteringSpan;
 use crate::media::path_numbers::{FurtherNumbers, depth};
 use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use raywright_base::math::{Hit, LANES, Ray};
-use raywright_base::sampling::{SamplerColumns, SamplerLanes};
+use raywright_base::sampling::{Sampler, SamplerColumns, SamplerLanes};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
 use raywright_scene::Scene;
-use std::ops::Range;
 
 /// Paths on their flights, and the columns that these write.
 struct PathFlights<'w, 'a> {
@@ -72,7 +70,7 @@ impl Traveller for PathFlights<'_, '_> {
                 position: ray.at(collision.t),
                 before: ray.direction / segment.length,
                 phase: segment.medium.phase(),
-                even: collision.density.map(|_| collision.here),
+                collision: collision.times(1.0 / flight.weights.drawn.mean()),
                 // Only the medium lies between.
                 is_second: std::mem::take(&mut path.is_first) && flight.passed == 0,
             });
@@ -134,33 +132,39 @@ impl Traveller for PathFlights<'_, '_> {
 }
 
 impl WavefrontWorker<'_> {
-    /// Stage: paths of samples start in the media around the camera.
-    pub(super) fn start_in_media(&mut self, samples: &CameraSamples, some: Range<usize>) {
+    /// Stage: paths of so many samples start in the media around the camera or their lights.
+    pub(super) fn start_in_media(&mut self, samples: usize) {
         let shares_waves = self.shares_waves();
         let (Some(media), Some(flights)) = (&mut self.media, &mut self.flights) else { return };
-        let Some(samplers) = &samples.samplers else { return };
+        let Some(samplers) = &self.samplers else { return };
         let queue = &self.paths[0];
-        let rays: Vec<Ray> = (0..some.len()).map(|i| queue.rays.get(i)).collect();
+        let rays: Vec<Ray> = (0..queue.rays.len).map(|i| queue.rays.get(i)).collect();
         let mut stacks = Vec::new();
         MediumStack::at(self.scene, &rays, &mut stacks);
         flights.begin();
         media.paths.clear();
+        media.paths.resize(samples, PathMedia::new(0, 0));
         media.further.clear();
+        // Light subpaths have the paired numbers of their camera subpaths.
+        let apart = |sampler: &Sampler| if self.end.is_some() { sampler.apart() } else { sampler.paired() };
+        media.further.extend((0..samples).map(|i| FurtherNumbers::new(apart(&samplers.get(i)))));
+        let dimension =
+            if matches!(self.end, Some(End::Light)) { EmissionDimensions::WAVES } else { Dimensions::WAVES };
         let mut last: Option<(&MediumStack<Filled>, u32)> = None;
-        for (i, stack) in some.zip(&stacks) {
+        for (&i, stack) in queue.sample.iter().zip(&stacks) {
+            let i = i as usize;
             let mut sampler = samplers.get(i);
-            media.further.push(FurtherNumbers::new(sampler.paired()));
             let same = last.filter(|(before, _)| before.interiors() == stack.interiors());
             let number = same.map_or_else(|| flights.stacks.number(stack), |(_, number)| number);
             last = Some((stack, number));
             // The first wavelength is the hero: dispersion ends all but that. Of red, green and blue it is any, and of
             // wavelengths that paths share.
-            let hero = match (self.waves.is_empty(), shares_waves, media.further.last_mut()) {
-                (true, ..) => ((sampler.one(Dimensions::WAVES) * 3.0) as usize).min(2),
-                (false, true, Some(further)) => further.hero(),
-                _ => 0,
+            let hero = match (self.waves.is_empty(), shares_waves) {
+                (true, _) => ((sampler.one(dimension) * 3.0) as usize).min(2),
+                (false, true) => media.further[i].hero(),
+                (false, false) => 0,
             };
-            media.paths.push(PathMedia::new(number, hero));
+            media.paths[i] = PathMedia::new(number, hero);
         }
     }
 

@@ -3,6 +3,7 @@
 //!
 //! A stage reads columns and writes columns. No stage knows the next; [`worker`] lists them.
 
+mod adjoint_stages;
 mod branch_stages;
 mod branches;
 mod bsdf_block;
@@ -24,16 +25,20 @@ mod medium_stacks;
 mod phase_stages;
 mod queues;
 mod shading_frames;
+mod subpath_stages;
+mod subpaths;
 mod transmittance_stages;
 mod waves;
 mod waves_stages;
 mod ways;
 mod worker;
 
+pub(super) use subpath_stages::{Limits, SubpathEmission, SubpathWavefront, Times};
+pub(super) use subpaths::{Arrival, Connection, Subpath, SubpathSink, VertexContext};
+
 use super::known_light::KnownLight;
 use super::path_settings::PathSettings;
-use super::{Guide, Job, Session, Worker};
-use raywright_scene::Footprint;
+use super::{Guide, Job, Session, Worker, narrow_views};
 use std::sync::Arc;
 use worker::WavefrontWorker;
 
@@ -71,21 +76,9 @@ impl<'a> Wavefront<'a> {
         // Infinite planes tell no size.
         let is_usual = size == 0.0 || !size.is_finite() || SIZES.contains(&size);
         is_usual
-            && tells_pixels_apart(job)
+            && narrow_views::are_wide_enough(job)
             && radiances.all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
     }
-}
-
-/// Return whether pixels are so wide, at the distance of the scene, that directions in f32 miss none of them.
-fn tells_pixels_apart(job: &Job<'_>) -> bool {
-    /// Roundings of a direction within a pixel.
-    const ROUNDINGS: f64 = 64.0;
-    let middle = [job.camera.width(), job.camera.height()].map(|pixels| 0.5 * f64::from(pixels));
-    let origin = job.camera.ray(middle, [0.5; 2], 0.0).ray.origin;
-    let region = job.scene.region();
-    let distance = (origin - region.centre).length() + region.radius;
-    let Footprint { width, spread } = job.footprint;
-    width + spread * distance >= ROUNDINGS * f64::from(f32::EPSILON) * distance
 }
 
 impl Session for Wavefront<'_> {

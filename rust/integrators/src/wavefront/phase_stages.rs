@@ -28,14 +28,15 @@ impl WavefrontWorker<'_> {
             let [firsts, seconds] = self.share_in_medium(some, bounce, samples);
             self.gather_media(samples);
             self.gather_waves();
-            if let Some(columns) = &self.samplers {
-                columns.gather(&self.block.sample.map(|sample| own(sample, samples)), numbers);
-            }
+            self.gather_numbers(samples, numbers);
             if !self.scene.lights().is_dark() {
                 timed(Part::Light, || self.ask_for_light_in_medium((some, number, seconds), numbers, bounce, samples));
             }
             if self.follows {
-                timed(Part::Continuation, || self.scatter_in_medium((some, firsts, seconds), numbers, bounce, samples));
+                timed(Part::Continuation, || {
+                    let (direction, pdf) = self.sample_phases((some, seconds), numbers, bounce, samples);
+                    self.scatter_in_medium((some, firsts), (&direction, &pdf), numbers, bounce);
+                });
             }
         }
         if let Some(media) = &mut self.media {
@@ -63,14 +64,14 @@ impl WavefrontWorker<'_> {
                 bounces,
             };
             let stack = &flights.stacks.get(media.paths[sample].media).media;
-            let throughput = Rgb::from_array(queue.throughput.each_ref().map(|column| column[i].into()));
+            let throughput = queue.throughput_of(i);
             let here = Scattering { position, before, phase };
             radiance[sample] += throughput * known.among(&here, stack, queue.rays.time(i), visit);
         }
     }
 
     /// Stage: what is known of sixteen scattering events.
-    fn meet_medium(&mut self, some: &[MediumScattering]) {
+    pub(super) fn meet_medium(&mut self, some: &[MediumScattering]) {
         let (queue, block) = (&self.paths[0], &mut *self.block);
         let surfaces = &mut block.surfaces;
         surfaces.count = some.len();
@@ -141,19 +142,17 @@ impl WavefrontWorker<'_> {
         block.sample = found;
     }
 
-    /// Stage: sixteen paths go on in the directions of phase functions, unless roulette ends them.
-    fn scatter_in_medium(
+    /// Stage: directions are drawn from sixteen phase functions. Returns them with their densities.
+    pub(super) fn sample_phases(
         &mut self,
-        (some, firsts, seconds): (&[MediumScattering], u32, u32),
+        (some, seconds): (&[MediumScattering], u32),
         numbers: &SamplerLanes,
         bounce: u32,
         samples: u32,
-    ) {
-        let plays = self.plays(bounce);
+    ) -> (SingleLanes, [f32; LANES]) {
         let (level, block) = (self.level, &mut *self.block);
-        let (mut one, mut u, mut chance) = ([0.0; LANES], [[0.0; LANES]; 2], [0.0; LANES]);
-        let dimensions = Dimensions::of(bounce, 0);
-        numbers.choice_and_pair(level, dimensions.scattering_choice(), &mut one, &mut u);
+        let (mut one, mut u) = ([0.0; LANES], [[0.0; LANES]; 2]);
+        numbers.choice_and_pair(level, Dimensions::of(bounce, 0).scattering_choice(), &mut one, &mut u);
         let (mut direction, mut pdf) = (SingleLanes::ZERO, [0.0; LANES]);
         for (lane, at) in some.iter().enumerate() {
             let next = at.phase.sample(at.before, [u[0][lane].into(), u[1][lane].into()]);
@@ -173,8 +172,22 @@ impl WavefrontWorker<'_> {
                 block.bsdf.spread[lane] = after.spread as f32;
             }
         }
+        (direction, pdf)
+    }
+
+    /// Stage: sixteen paths go on in directions of such densities, unless roulette ends them.
+    pub(super) fn scatter_in_medium(
+        &mut self,
+        (some, firsts): (&[MediumScattering], u32),
+        (direction, pdf): (&SingleLanes, &[f32; LANES]),
+        numbers: &SamplerLanes,
+        bounce: u32,
+    ) {
+        let plays = self.plays(bounce);
+        let (level, block) = (self.level, &mut *self.block);
         if plays {
-            numbers.one(level, &[dimensions.roulette(); LANES], &mut chance);
+            let mut chance = [0.0; LANES];
+            numbers.one(level, &[Dimensions::of(bounce, 0).roulette(); LANES], &mut chance);
             let before = block.throughput;
             if self.scene.surrounding().is_some() {
                 let chance = chance.map(|chance| chance as f32);
@@ -194,13 +207,13 @@ impl WavefrontWorker<'_> {
             }
         }
         let mut goes_on = [0; LANES];
-        matte::survive(level, &block.throughput, &pdf, &mut goes_on);
+        matte::survive(level, &block.throughput, pdf, &mut goes_on);
         let paths = PathLanes {
             origin: &block.surfaces.origin,
-            direction: &direction,
+            direction,
             misses: &[[Ray::NO_TRIANGLE; 2]; LANES],
             throughput: &block.throughput,
-            pdf: &pdf,
+            pdf,
             normal: &SingleLanes::ZERO,
             sample: &block.sample,
             scale: &block.bsdf.scale,

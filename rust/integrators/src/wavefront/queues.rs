@@ -1,7 +1,7 @@
 //! Paths and shadow rays that wait for their next stage.
 
 use crate::media::spectral_mis::Weights;
-use raywright_base::math::{DVec3, LANES, PathRays, SingleLanes, VectorLanes};
+use raywright_base::math::{DVec3, LANES, PathRays, Ray, SingleLanes, Vec3, VectorLanes};
 use raywright_base::simd::{Column, Level, pack};
 use raywright_optics::Rgb;
 
@@ -67,6 +67,7 @@ pub(super) struct Extra {
 }
 
 /// Shadow rays, and their light if nothing blocks it.
+#[derive(Default)]
 pub(super) struct ShadowQueue {
     pub rays: PathRays,
     /// By channel.
@@ -220,6 +221,30 @@ impl PathQueue {
 }
 
 impl PathQueue {
+    /// Appends a path that starts along a ray.
+    pub fn start(&mut self, sample: u32, ray: &Ray, throughput: Vec3) {
+        let to = self.rays.len;
+        for axis in 0..3 {
+            self.rays.origin[axis][to] = ray.origin[axis];
+            self.rays.direction[axis][to] = ray.direction[axis] as f32;
+            self.throughput[axis][to] = throughput[axis];
+        }
+        (self.rays.misses[to], self.sample[to], self.pdf[to]) = (ray.misses, sample, f32::INFINITY);
+        if let (Some(scale), Some(flags)) = (self.scale.get_mut(to), self.flags.get_mut(to)) {
+            (*scale, *flags) = (1.0, 0);
+        }
+        if let Some(time) = self.rays.time.get_mut(to) {
+            *time = ray.time;
+        }
+        self.rays.len += 1;
+    }
+
+    /// The throughput of a path.
+    #[inline]
+    pub fn throughput_of(&self, path: usize) -> Rgb {
+        Rgb::from_array(self.throughput.each_ref().map(|column| column[path].into()))
+    }
+
     /// Where a path was scattered last.
     #[inline]
     pub fn vertex(&self, path: usize) -> DVec3 {
@@ -266,6 +291,27 @@ impl ShadowQueue {
         self.arriving.iter_mut().chain([&mut self.ratio]).for_each(|column| lengthen(column, room));
         lengthen(&mut self.sample, room);
         lengthen(&mut self.media, room);
+    }
+
+    /// Appends a ray of a sample in some media, whose light is 1.
+    pub fn push_ray(&mut self, ray: &Ray, sample: u32, media: u32) {
+        let to = self.rays.len;
+        if self.sample.len() < to + LANES {
+            self.grow(2 * (to + LANES));
+        }
+        for axis in 0..3 {
+            self.rays.origin[axis][to] = ray.origin[axis];
+            self.rays.direction[axis][to] = ray.direction[axis] as f32;
+            self.arriving[axis][to] = 1.0;
+        }
+        (self.rays.t_max[to], self.rays.misses[to], self.sample[to]) = (ray.t_max, ray.misses, sample);
+        if let (Some(of), Some(ratio)) = (self.media.get_mut(to), self.ratio.get_mut(to)) {
+            (*of, *ratio) = (media, 0.0);
+        }
+        if let Some(time) = self.rays.time.get_mut(to) {
+            *time = ray.time;
+        }
+        self.rays.len += 1;
     }
 
     /// Appends the rays of the lanes in a mask.

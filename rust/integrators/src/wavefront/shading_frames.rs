@@ -171,6 +171,11 @@ impl ShadingFrames {
         }
     }
 
+    /// Return whether shading and geometric normal of a lane are equal.
+    pub fn is_flat(&self, lane: usize) -> bool {
+        self.interactions.as_ref().is_none_or(|all| all.lanes.get(lane, Null).is_flat())
+    }
+
     /// Mean curvature of a lane, where widths of rays are known.
     pub fn curvature(&self, lane: usize) -> f64 {
         self.interactions.as_ref().map_or(0.0, |all| all.lanes.curvature(lane))

@@ -22,6 +22,8 @@ struct ShadowFlights<'w, 'a> {
     shadows: &'w ShadowQueue,
     waves: &'w [PathWaves],
     media: &'w mut Media<'a>,
+    /// True if they join the subpaths of two ends.
+    joins: bool,
     /// The light that arrives, by place.
     arriving: &'w mut [(u32, Rgb)],
 }
@@ -35,8 +37,10 @@ impl ShadowFlights<'_, '_> {
         // Those that were queued on the ways of paths start in a medium, as do those of scattering events.
         let leaves = self.shadows.rays.misses[..self.shadows.rays.len].get(flight.place as usize);
         let roulette = leaves.is_none_or(|misses| misses[0] == Ray::NO_TRIANGLE);
-        let (hero, further) = (&mut Some(self.media.paths[place].hero), &mut self.media.further[place]);
-        MediumSegment { roulette, ..segment }.fade(&mut flight.weights, hero, further, self.cancel);
+        // Both ends may have been sampled by different colors: the mean of a product is that of independent factors.
+        let mut hero = (!self.joins).then_some(self.media.paths[place].hero);
+        let further = &mut self.media.further[place];
+        MediumSegment { roulette, ..segment }.fade(&mut flight.weights, &mut hero, further, self.cancel);
     }
 }
 
@@ -94,7 +98,7 @@ impl WavefrontWorker<'_> {
     /// scattering is known.
     pub(super) fn follow_shadows_through_media(&mut self, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
         let (Some(media), Some(flights)) = (&mut self.media, &mut self.flights) else { return };
-        let queue = &self.shadows;
+        let (queue, joins) = (&self.shadows, self.end.is_some());
         std::mem::swap(&mut flights.now, &mut media.on_the_way);
         let count = queue.rays.len as u32;
         for (flight, place) in flights.now.all.iter_mut().zip(count..) {
@@ -102,7 +106,7 @@ impl WavefrontWorker<'_> {
         }
         let [r, g, b] = &queue.arriving;
         for i in 0..queue.rays.len {
-            let drawn = media.paths[own(queue.sample[i], samples) as usize].drawn;
+            let drawn = if joins { Rgb::ONE } else { media.paths[own(queue.sample[i], samples) as usize].drawn };
             let carried = Rgb::new(r[i].into(), g[i].into(), b[i].into());
             let weights = Weights { carried, drawn: drawn * f64::from(queue.ratio[i]), asked: drawn };
             let (place, sample, way) = (i as u32, queue.sample[i], queue.rays.t_max[i] / PathRays::END);
@@ -116,12 +120,12 @@ impl WavefrontWorker<'_> {
             self.arriving[flight.place as usize].0 = flight.sample;
         }
         let (scene, waves, arriving) = (self.scene, &self.waves[..], &mut self.arriving[..]);
-        let mut shadows = ShadowFlights { scene, samples, cancel, shadows: queue, waves, media, arriving };
+        let mut shadows = ShadowFlights { scene, samples, cancel, shadows: queue, waves, media, joins, arriving };
         while flights.now.rays.len > 0 && !cancel.is_raised() {
             flights.step(scene, self.level, &mut shadows);
         }
-        for &(sample, arriving) in &self.arriving {
-            radiance[sample as usize] += arriving;
+        for (i, &(sample, arriving)) in self.arriving.iter().enumerate() {
+            radiance[if joins { i } else { sample as usize }] += arriving;
         }
     }
 }

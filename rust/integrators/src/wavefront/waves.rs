@@ -31,6 +31,13 @@ pub(super) struct WavesBlock {
     pub ends: [bool; LANES],
 }
 
+impl PathWaves {
+    /// Of a path that starts.
+    pub fn new(first: Waves) -> Self {
+        Self { first, now: first }
+    }
+}
+
 impl WavesBlock {
     /// Of no paths.
     pub const NONE: Self =
@@ -60,7 +67,7 @@ pub(super) fn draw(
             Waves::of(u)
         });
         let count = groups.next().map_or(1, |&count| count as usize);
-        waves.extend(std::iter::repeat_n(PathWaves { first, now: first }, count));
+        waves.extend(std::iter::repeat_n(PathWaves::new(first), count));
         start += count;
     }
 }

@@ -23,10 +23,10 @@ impl WavefrontWorker<'_> {
         }
     }
 
-    /// Return whether paths share their wavelengths with known light or with a group. Then each path chooses one of the
-    /// three to sample distances by: the paths of a group must be independent.
+    /// Return whether paths share their wavelengths with known light, with a group, or with the path from the other
+    /// end. Then each path chooses one of the three to sample distances by: the paths must be independent.
     pub(super) fn shares_waves(&self) -> bool {
-        self.known.is_some() || self.shares()
+        self.known.is_some() || self.shares() || self.end.is_some()
     }
 
     /// Stage: at surfaces that refract each wavelength in its own direction, paths keep the hero alone.

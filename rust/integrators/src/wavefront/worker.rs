@@ -11,11 +11,13 @@ use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue, own};
 use super::waves::{self, PathWaves, WavesBlock};
 use super::ways::Way;
 use crate::known_light::KnownLight;
+use crate::media::current_medium::Filled;
+use crate::nesting::MediumStack;
 use crate::path_settings::{Follow, PathSettings};
 use crate::path_sharing::PathSharing;
-use crate::{CameraSample, CameraSamples, Guide, Job, Worker, roulette};
+use crate::{CameraSample, CameraSamples, Guide, Job, Worker, narrow_views, roulette};
 use raywright_accel::Primitives;
-use raywright_base::math::{Hit, LANES, Ray, SingleLanes, Vec3, VectorLanes, gather};
+use raywright_base::math::{DVec3, Hit, LANES, Ray, SingleLanes, Vec3, VectorLanes, gather};
 use raywright_base::sampling::{SamplerColumns, SamplerLanes};
 use raywright_base::simd::Level;
 use raywright_base::timing::{Part, count, timed};
@@ -35,6 +37,10 @@ pub(super) struct WavefrontWorker<'a> {
     /// That of a camera's ray.
     pub(super) footprint: Footprint,
     pub(super) settings: PathSettings,
+    /// True if camera rays start close to the scene ([`narrow_views`]).
+    pub(super) approaches: bool,
+    /// Where subpaths start whose vertices go to a sink; `None` for whole paths.
+    pub(super) end: Option<End>,
     /// True if paths go on from surfaces; and true if matte surfaces need no more than their own stages.
     pub(super) follows: bool,
     pub(super) is_plain: bool,
@@ -76,6 +82,13 @@ pub(super) struct WavefrontWorker<'a> {
     /// The densities with which surfaces scatter into directions to each of few lights.
     pub(super) each_pdf: Vec<[f64; LANES]>,
     pub(super) block: Box<Block<'a>>,
+}
+
+/// An end of paths that subpaths start from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum End {
+    Light,
+    Camera,
 }
 
 /// Sixteen paths at a surface.
@@ -184,17 +197,39 @@ impl<'a> WavefrontWorker<'a> {
         guide: Option<&'a Guide>,
         known: Option<&'a dyn KnownLight>,
     ) -> Self {
+        Self::with(job.scene, Some(job), None, settings, (guide, known))
+    }
+
+    /// For light subpaths.
+    pub fn of_lights(scene: &'a Scene, settings: PathSettings) -> Self {
+        Self::with(scene, None, Some(End::Light), settings, (None, None))
+    }
+
+    /// For camera subpaths.
+    pub fn of_camera(job: &Job<'a>, settings: PathSettings) -> Self {
+        Self::with(job.scene, Some(job), Some(End::Camera), settings, (None, None))
+    }
+
+    fn with(
+        scene: &'a Scene,
+        job: Option<&Job<'a>>,
+        end: Option<End>,
+        settings: PathSettings,
+        (guide, known): (Option<&'a Guide>, Option<&'a dyn KnownLight>),
+    ) -> Self {
         let (is_plain, PathSettings { shares, scatters, .. }) = (settings.are_plain(), settings);
-        let (scene, level) = (job.scene, Level::current().unwrap_or(Level::Scalar));
+        let (is_whole, level) = (end.is_none(), Level::current().unwrap_or(Level::Scalar));
+        let is_light = matches!(end, Some(End::Light));
         let needs = scene.plan().needs();
         let vary = needs.smooth || needs.instances || needs.points.width || needs.nested && needs.waves;
         let are_flat = scene.plan().is_constant() && !vary && is_plain;
         let has_kinds = needs.scattering || guide.is_some() || !are_flat;
-        let normal = scene.lights().ask_for_normals();
+        let normal = is_whole && scene.lights().ask_for_normals();
         // A ray that passes a mask may come to the same shape again.
         let media = needs.media || needs.nested;
-        let hits = needs.instances || needs.motion || needs.masks && needs.shapes && !media;
-        let (aimed, width, time) = (guide.is_some(), needs.points.width, needs.motion);
+        let passes = needs.masks && needs.shapes && !media;
+        let hits = needs.instances || needs.motion || passes || scene.geometry().is_extreme();
+        let (aimed, width, time) = (guide.is_some(), !is_light && needs.points.width, needs.motion);
         let state = has_kinds || media || needs.waves;
         let extra = Extra { normal, state, aimed, width, time, hits, media };
         let kinds = if has_kinds { Plan::KINDS } else { 1 };
@@ -216,9 +251,11 @@ impl<'a> WavefrontWorker<'a> {
         Self {
             scene,
             level,
-            seed: job.seed,
-            footprint: job.footprint,
+            seed: job.map_or(0, |job| job.seed),
+            footprint: job.map_or_else(Footprint::default, |job| job.footprint),
+            approaches: job.is_some_and(narrow_views::approaches),
             settings: PathSettings { roulette_depth: settings.roulette_depth.min(roulette::AT_LATEST), ..settings },
+            end,
             follows: settings.follow != Follow::Nothing,
             is_plain,
             known,
@@ -238,7 +275,7 @@ impl<'a> WavefrontWorker<'a> {
             kinds: (0..few).map(|primitive| kind_of(scene, primitive) as u8).collect(),
             extra,
             masks: Masks::of(scene),
-            media: Media::of(scene, shares, scatters && known.is_none(), extra),
+            media: Media::of(scene, shares, scatters && known.is_none() && is_whole, extra),
             flights: media.then(|| Flights::new(scene, scatters, extra)),
             arriving: Vec::new(),
             waves: Vec::new(),
@@ -257,7 +294,7 @@ impl<'a> WavefrontWorker<'a> {
     }
 
     /// Stage: some of the camera's rays become paths.
-    fn start(&mut self, samples: &CameraSamples, some: Range<usize>) {
+    pub(super) fn start(&mut self, samples: &CameraSamples, some: Range<usize>) {
         let (queue, count) = (&mut self.paths[0], some.len());
         queue.make_room(count);
         queue.rays.len = count;
@@ -285,6 +322,18 @@ impl<'a> WavefrontWorker<'a> {
         if self.extra.width {
             queue.width[..count].fill(self.footprint.width as f32);
             queue.spread[..count].fill(self.footprint.spread as f32);
+        }
+        if self.approaches {
+            for (i, from) in some.clone().enumerate() {
+                let [origin, direction] =
+                    [&samples.origin, &samples.direction].map(|all| DVec3::from(all.each_ref().map(|axis| axis[from])));
+                let way = narrow_views::approach(self.scene, origin, direction);
+                let start = origin + direction * way;
+                (0..3).for_each(|axis| queue.rays.origin[axis][i] = start[axis]);
+                if self.extra.width {
+                    queue.width[i] = self.footprint.at(way).width as f32;
+                }
+            }
         }
         queue.rays.misses[..count].fill([Ray::NO_TRIANGLE; 2]);
         if let Some(samplers) = &samples.samplers {
@@ -343,15 +392,40 @@ impl<'a> WavefrontWorker<'a> {
         }
     }
 
-    /// Stage: gathers sixteen surfaces, and adds their emission.
-    fn meet(&mut self, which: &[u32], radiance: &mut [Rgb]) {
+    /// Stage: gathers sixteen paths at surfaces.
+    pub(super) fn meet_surfaces(&mut self, which: &[u32]) {
         let (queue, block) = (&self.paths[0], &mut *self.block);
-        let geometry = self.scene.geometry();
         let met = (&self.primitives[..], &self.hits[..]);
-        geometry.meet_block(self.level, &queue.rays, met, which, &mut block.surfaces);
+        self.scene.geometry().meet_block(self.level, &queue.rays, met, which, &mut block.surfaces);
         block.gather(queue, self.extra);
-        let queue = (queue, &self.hits[..], &self.waves[..]);
-        emission::add_emitted(self.scene, queue, &block.surfaces, &block.bsdf.width, radiance);
+    }
+
+    /// Stage: adds the emission of sixteen surfaces.
+    fn add_emission(&self, radiance: &mut [Rgb]) {
+        let queue = (&self.paths[0], &self.hits[..], &self.waves[..]);
+        emission::add_emitted(self.scene, queue, &self.block.surfaces, &self.block.bsdf.width, radiance);
+    }
+
+    /// Stage: gathers the random numbers of sixteen paths.
+    pub(super) fn gather_numbers(&self, samples: u32, numbers: &mut SamplerLanes) {
+        if let Some(columns) = &self.samplers {
+            columns.gather(&self.block.sample.map(|sample| own(sample, samples)), numbers);
+        }
+    }
+
+    /// Return whether flux is followed, from lights.
+    pub(super) fn is_light(&self) -> bool {
+        matches!(self.end, Some(End::Light))
+    }
+
+    /// Return where the light of a shadow ray is added: by sample, or by ray if a sink receives it.
+    pub(super) fn receiver(&self, ray: usize) -> usize {
+        if self.end.is_some() { ray } else { self.shadows.sample[ray] as usize }
+    }
+
+    /// Return the media of a number; none in scenes without.
+    pub(super) fn stack(&self, number: u32) -> MediumStack<Filled> {
+        self.flights.as_ref().map_or(MediumStack::NONE, |flights| flights.stacks.get(number).media)
     }
 
     /// Stage: gathers the media of sixteen paths.
@@ -371,7 +445,7 @@ impl<'a> WavefrontWorker<'a> {
     }
 
     /// Stage: traces shadow rays, and adds the light of those that nothing blocks.
-    fn follow_shadows(&mut self, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
+    pub(super) fn follow_shadows(&mut self, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
         self.meet_masked_lamps();
         if self.media.is_some() && self.settings.shadows {
             return self.follow_shadows_through_media(samples, cancel, radiance);
@@ -386,7 +460,7 @@ impl<'a> WavefrontWorker<'a> {
         let [r, g, b] = &queue.arriving;
         for (i, &is_occluded) in self.is_occluded[..queue.rays.len].iter().enumerate() {
             if !is_occluded {
-                radiance[queue.sample[i] as usize] += Rgb::new(r[i].into(), g[i].into(), b[i].into());
+                radiance[self.receiver(i)] += Rgb::new(r[i].into(), g[i].into(), b[i].into());
             }
         }
         self.dim_by_masks(radiance);
@@ -406,7 +480,7 @@ impl<'a> WavefrontWorker<'a> {
         if self.scene.plan().needs().waves {
             waves::draw(samples, some.clone(), (groups, self.seed), self.known, &mut self.waves);
         }
-        self.start_in_media(samples, some);
+        self.start_in_media(count);
         let Some(mut numbers) = self.samplers.as_ref().map(SamplerColumns::lanes) else { return };
         let Some(branches) = &mut self.branches else {
             for bounce in 0.. {
@@ -438,8 +512,15 @@ impl<'a> WavefrontWorker<'a> {
         self.found = found;
     }
 
-    /// Takes all paths to their next hits, and scatters them there.
-    fn bounce(&mut self, numbers: &mut SamplerLanes, bounce: u32, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
+    /// Takes all paths to their next vertices, and sorts them by what is there.
+    pub(super) fn find_vertices(
+        &mut self,
+        numbers: &mut SamplerLanes,
+        bounce: u32,
+        samples: u32,
+        cancel: &Cancel,
+        radiance: &mut [Rgb],
+    ) {
         self.make_room(self.paths[0].rays.len);
         self.shadows.rays.len = 0;
         if self.media.is_some() {
@@ -451,25 +532,30 @@ impl<'a> WavefrontWorker<'a> {
             });
         }
         self.classify();
+        self.paths[1].rays.len = 0;
+    }
+
+    /// Takes all paths to their next vertices, and scatters them there.
+    fn bounce(&mut self, numbers: &mut SamplerLanes, bounce: u32, samples: u32, cancel: &Cancel, radiance: &mut [Rgb]) {
+        self.find_vertices(numbers, bounce, samples, cancel, radiance);
         timed(Part::Arriving, || {
             emission::add_outside(self.scene, (&self.paths[0], &self.waves), &self.outside, radiance);
         });
-        self.paths[1].rays.len = 0;
         let goes_on = self.settings.max_depth.is_none_or(|depth| bounce < depth);
         for kind in 0..self.met.len() {
             let met = std::mem::take(&mut self.met[kind]);
             count(met.len());
             for some in met.chunks(LANES) {
-                timed(Part::Surface, || self.meet(some, radiance));
+                timed(Part::Surface, || {
+                    self.meet_surfaces(some);
+                    self.add_emission(radiance);
+                });
                 if !goes_on {
                     continue;
                 }
                 self.gather_media(samples);
                 self.gather_waves();
-                if let Some(columns) = &self.samplers {
-                    let own = self.block.sample.map(|sample| own(sample, samples));
-                    timed(Part::Numbers, || columns.gather(&own, numbers));
-                }
+                timed(Part::Numbers, || self.gather_numbers(samples, numbers));
                 if kind == Plan::DIFFUSE && self.is_plain && !(self.extra.aimed || self.extra.width) {
                     self.leave_matte(numbers, bounce, samples);
                 } else {

@@ -225,6 +225,13 @@ impl Primitives for Geometry {
 }
 
 impl Geometry {
+    /// Return whether f32 may not hold the products of two lengths, also where a triangle is a thousandth of the scene.
+    pub fn is_extreme(&self) -> bool {
+        let size = self.region().radius;
+        // Infinite planes tell no size.
+        size > 0.0 && size.is_finite() && !(1e-14..1e16).contains(&size)
+    }
+
     /// Joins surfaces; their index becomes the shape number.
     ///
     /// # Panics

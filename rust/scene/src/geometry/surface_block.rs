@@ -167,7 +167,12 @@ impl Geometry {
             gather(&rays.direction[axis], &surfaces.index, &mut surfaces.direction.0[axis]);
             gather(&rays.origin[axis], &surfaces.index, origin.axis_mut(axis));
         }
-        let others = self.lanes_of_shapes(&surfaces.primitive);
+        // All of the hits are given where f32 does not hold the products of two lengths.
+        let others = if !hits.is_empty() && self.is_extreme() {
+            (1 << LANES) - 1
+        } else {
+            self.lanes_of_shapes(&surfaces.primitive)
+        };
         for lane in (0..LANES).filter(|lane| others >> lane & 1 == 0) {
             let primitive = surfaces.primitive[lane];
             let corners: [DVec3; 3] = match (self.facets.get(primitive), &self.vertices) {

@@ -12,7 +12,6 @@ use crate::media::current_medium::{self, Filled};
 use crate::media::distance_sampling::Collision;
 use crate::media::scattering::Scattering;
 use crate::nesting::MediumStack;
-use crate::terminate_wavelengths::Parting;
 use raywright_base::math::{DVec3, Hit, Ray};
 use raywright_optics::spectra::Waves;
 use raywright_optics::{Bsdf, Rgb};
@@ -42,8 +41,6 @@ pub(crate) enum Point<'a> {
         arrived: Arrived<'a>,
         /// The interaction of the camera path's wide ray, if that differs.
         wide: Option<Box<SurfaceInteraction>>,
-        /// Media of a transmitted ray.
-        through: MediumStack<Filled>,
     },
     Medium {
         here: Scattering,
@@ -67,7 +64,7 @@ pub(crate) struct ConnectedVertex {
 }
 
 impl<'a> Vertex<'a> {
-    /// Make the vertex of a ray's hit, given the media on both sides, and the dispersion that splits its wavelengths.
+    /// Make the vertex of a ray's hit, given the media on both sides.
     #[inline(always)]
     pub fn of_surface(
         scene: &'a Scene,
@@ -75,29 +72,22 @@ impl<'a> Vertex<'a> {
         outside: f64,
         (media, through): (MediumStack<Filled>, MediumStack<Filled>),
         waves: Option<Waves>,
-        parting: &mut Option<Parting>,
     ) -> Self {
         let arrived = match waves {
             None => Arrived::new(scene, ray, hit, outside),
             Some(waves) => {
                 let around = [&media, &through].map(MediumStack::dispersion);
-                let (arrived, parts) = Arrived::by_waves(scene, (ray, hit), (outside, around), waves);
-                *parting = parts;
-                arrived
+                Arrived::by_waves(scene, (ray, hit), (outside, around), waves)
             }
         };
-        Self { point: Point::Surface { arrived, wide: None, through }, ray, t: hit.t, media }
+        Self { point: Point::Surface { arrived, wide: None }, ray, t: hit.t, media }
     }
 
-    /// Return whether dispersion waits for the direction of a path from here.
-    pub fn waits(&self, parting: &Parting) -> bool {
-        matches!(&self.point, Point::Surface { arrived, .. } if parting.waits(arrived.here.bsdf()))
-    }
-
-    /// Set the interaction of a camera path's wide ray.
-    pub fn set_wide(&mut self, seen: SurfaceInteraction) {
-        if let Point::Surface { wide, .. } = &mut self.point {
-            *wide = Some(Box::new(seen));
+    /// Set the previous vertex of the path, at a distance. The ray may have started later, behind boundaries and masks.
+    pub fn come_from(&mut self, vertex: DVec3, distance: f64) {
+        (self.ray.origin, self.t) = (vertex, distance);
+        if let Point::Surface { arrived, .. } = &mut self.point {
+            (arrived.ray.origin, arrived.hit.t) = (vertex, distance);
         }
     }
 
@@ -132,11 +122,6 @@ impl<'a> Vertex<'a> {
             Point::Surface { arrived, .. } => arrived.here.ray_origin(),
             Point::Medium { here, .. } => here.ray_origin(),
         }
-    }
-
-    /// Return whether this is a point of a medium.
-    pub fn is_in_medium(&self) -> bool {
-        matches!(self.point, Point::Medium { .. })
     }
 
     /// Return the surface, if it is a matte one.
@@ -239,38 +224,9 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// Return the media of a ray that leaves in a direction.
-    pub fn media(&self, direction: DVec3) -> MediumStack<Filled> {
-        match &self.point {
-            Point::Surface { arrived, through, .. } if arrived.here.is_through(direction) => *through,
-            _ => self.media,
-        }
-    }
-
-    /// Return the media of a sampled ray, which is transmitted or not.
-    pub fn media_after(&self, is_through: bool) -> MediumStack<Filled> {
-        match &self.point {
-            Point::Surface { through, .. } if is_through => *through,
-            _ => self.media,
-        }
-    }
-
     /// Return whether the camera path's wide ray has a different interaction.
     pub fn is_wide(&self) -> bool {
         matches!(&self.point, Point::Surface { wide: Some(_), .. })
-    }
-
-    /// Return the mean curvature for the camera path.
-    pub fn curvature(&self) -> f64 {
-        match &self.point {
-            Point::Surface { wide: Some(wide), .. } => wide.curvature(),
-            _ => 0.0,
-        }
-    }
-
-    /// Return the ray with this vertex's time, that skips this primitive and `to`.
-    pub fn leaving(&self, ray: Ray, to: u32) -> Ray {
-        Ray { time: self.ray.time, misses: [self.primitive(), to], ..ray }
     }
 
     /// Return the primitive.
@@ -278,14 +234,6 @@ impl<'a> Vertex<'a> {
         match &self.point {
             Point::Surface { arrived, .. } => arrived.hit.primitive,
             Point::Medium { .. } => Ray::NO_TRIANGLE,
-        }
-    }
-
-    /// Return the remaining share of light that met a reflectance above 1 before ([`Bsdf::repeat_correction`]).
-    pub fn repeat_correction(&self) -> Rgb {
-        match &self.point {
-            Point::Surface { arrived, .. } => arrived.here.bsdf().repeat_correction(),
-            Point::Medium { .. } => Rgb::ONE,
         }
     }
 }

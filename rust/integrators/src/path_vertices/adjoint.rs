@@ -72,6 +72,7 @@ impl AdjointInteraction<'_> {
 }
 
 /// A sampled direction of a light path.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Onward {
     pub direction: DVec3,
     /// Factor on the flux.
@@ -119,21 +120,20 @@ impl<'a> Arrived<'a> {
         Self { scene, ray, hit, outside, waves: None, here }
     }
 
-    /// Make the vertex at given wavelengths, and return the wavelength dependence that splits them, if any. `outside`
-    /// is the index of refraction for yellow light. `around` holds the dispersion in front of the surface and behind
-    /// it.
+    /// Make the vertex at given wavelengths. `outside` is the index of refraction for yellow light. `around` holds the
+    /// dispersion in front of the surface and behind it.
     pub fn by_waves(
         scene: &'a Scene,
         (ray, hit): (Ray, Hit),
         (outside, around): (f64, [Dispersive; 2]),
         waves: Waves,
-    ) -> (Self, Option<Parting>) {
+    ) -> Self {
         let surface = scene.geometry().surface(&ray, &hit);
         let is_front = surface.is_front(&ray);
         let around = around[usize::from(!is_front)];
-        let (outside, parting) = Parting::at(scene.material_at(&surface), is_front, (outside, around), &waves);
+        let (outside, _) = Parting::at(scene.material_at(&surface), is_front, (outside, around), &waves);
         let here = SurfaceInteraction::new(scene, &ray, &hit, surface, Some(waves), outside);
-        (Self { scene, ray, hit, outside, waves: Some(waves), here }, parting)
+        Self { scene, ray, hit, outside, waves: Some(waves), here }
     }
 
     /// Return the interaction of a ray from a direction and distance, with a given width at this point.
