@@ -76,11 +76,6 @@ impl Dimensions {
     fn more(self, number: u32) -> u32 {
         Self::MORE | self.0.wrapping_mul(64).wrapping_add(2 * number)
     }
-    /// Return the dimension of the scattered direction.
-    #[inline]
-    pub fn direction(self) -> u32 {
-        self.0 + 3
-    }
     /// Return the dimension of Russian roulette.
     #[inline]
     pub fn roulette(self) -> u32 {

@@ -21,7 +21,6 @@ mod media;
 mod mis_weight;
 mod narrow_views;
 mod nesting;
-mod one_by_one;
 mod path;
 mod path_settings;
 mod path_sharing;

@@ -1,41 +1,63 @@
 //! Views so narrow, as of telescopes, that directions in f32 would miss their pixels.
 
 use super::Job;
-use raywright_base::math::DVec3;
+use raywright_base::math::{Hit, Ray};
 use raywright_scene::{Footprint, Scene};
 
-/// Return whether pixels at the distance of the scene are so wide that directions in f32 miss none of them over a way.
-fn tells_pixels_apart(job: &Job<'_>, way: f64) -> bool {
-    /// Roundings of a direction within a pixel.
-    const ROUNDINGS: f64 = 64.0;
-    let Footprint { width, spread } = job.footprint;
-    width + spread * distance(job) >= ROUNDINGS * f64::from(f32::EPSILON) * way
+/// Where the stages' camera rays start. Roundings of a direction matter by the length of a ray alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum CameraStart {
+    AtCamera,
+    /// Before all that the scene contains.
+    CloseToScene,
+    /// Before their first hits, which are found in f64.
+    CloseToHits,
 }
 
-/// Return the distance from the camera to the far end of the scene.
-fn distance(job: &Job<'_>) -> f64 {
+impl CameraStart {
+    /// Choose by the width of pixels at the distance of the scene. Media on the way to a hit must not be skipped.
+    pub fn of(job: &Job<'_>) -> Self {
+        let (scene, region) = (job.scene, job.scene.region());
+        if tells_pixels_apart(job) {
+            Self::AtCamera
+        } else if !scene.plan().needs().media {
+            Self::CloseToHits
+        } else if scene.surrounding().is_none() && region.radius > 0.0 && region.radius.is_finite() {
+            Self::CloseToScene
+        } else {
+            Self::AtCamera
+        }
+    }
+
+    /// Return the distance of each camera ray's start from the camera.
+    pub fn ways(self, scene: &Scene, rays: &[Ray]) -> Vec<f64> {
+        /// Remaining share of the way.
+        const REST: f64 = 1.0 / (1u64 << 20) as f64;
+        let region = scene.region();
+        match self {
+            Self::AtCamera => vec![0.0; rays.len()],
+            // All coordinates are within the radius: no point is farther from the center than √3 radii.
+            Self::CloseToScene => rays
+                .iter()
+                .map(|ray| ((region.centre - ray.origin).dot(ray.direction) - 2.0 * region.radius).max(0.0))
+                .collect(),
+            Self::CloseToHits => {
+                let mut hits = vec![Hit::MISS; rays.len()];
+                scene.intersect(rays, &mut hits);
+                hits.iter().map(|hit| if hit.is_hit() { hit.t * (1.0 - REST) } else { 0.0 }).collect()
+            }
+        }
+    }
+}
+
+/// Return whether pixels at the distance of the scene are so wide that directions in f32 miss none of them.
+fn tells_pixels_apart(job: &Job<'_>) -> bool {
+    /// Roundings of a direction within a pixel.
+    const ROUNDINGS: f64 = 64.0;
     let middle = [job.camera.width(), job.camera.height()].map(|pixels| 0.5 * f64::from(pixels));
     let origin = job.camera.ray(middle, [0.5; 2], 0.0).ray.origin;
     let region = job.scene.region();
-    (origin - region.centre).length() + region.radius
-}
-
-/// Return whether camera rays start close to the scene, in f64: where it matters, and nothing fills the space before.
-pub(super) fn approaches(job: &Job<'_>) -> bool {
-    let radius = job.scene.region().radius;
-    let is_bounded = radius > 0.0 && radius.is_finite() && job.scene.surrounding().is_none();
-    is_bounded && !tells_pixels_apart(job, distance(job))
-}
-
-/// Return whether directions in f32 suffice from where camera rays start.
-pub(super) fn are_wide_enough(job: &Job<'_>) -> bool {
-    let way = distance(job);
-    tells_pixels_apart(job, if approaches(job) { way.min(4.0 * job.scene.region().radius) } else { way })
-}
-
-/// Return how far a ray of unit direction can start later, before it comes to the scene.
-pub(super) fn approach(scene: &Scene, origin: DVec3, direction: DVec3) -> f64 {
-    // All coordinates are within the radius: no point is farther from the center than √3 radii.
-    let region = scene.region();
-    ((region.centre - origin).dot(direction) - 2.0 * region.radius).max(0.0)
+    let distance = (origin - region.centre).length() + region.radius;
+    let Footprint { width, spread } = job.footprint;
+    width + spread * distance >= ROUNDINGS * f64::from(f32::EPSILON) * distance
 }

@@ -133,6 +133,19 @@ def test_a_camera_ten_million_away_sees_what_is_there(integrator):
     np.testing.assert_allclose(image.rgb[radius < 0.9], 3)
 
 
+@pytest.mark.parametrize("integrator", [rw.Path(), rw.Bidirectional()], ids=["path", "bidirectional"])
+def test_a_speck_in_a_room_has_a_sharp_edge(integrator):
+    # Roundings of directions in float32 would be ten pixels wide.
+    size = 1e-7
+    speck = rw.Sphere((0, 0, 0), size, material=rw.Diffuse(0), emission=3)
+    room = rw.Box((-5, -5, -5), (5, 5, 5), material=rw.Diffuse(0))
+    camera = rw.Camera((0, 0, 1), (0, 0, 0), fov=math.degrees(4 * size), width=64, height=64)
+    image = rw.render(rw.Scene([speck, room]), camera, integrator, samples=4, progress=False)
+    radius = np.hypot(*np.meshgrid(*[(np.arange(64) + 0.5 - 32) / 16] * 2))
+    assert not image.rgb[radius > 1.1].any()
+    np.testing.assert_allclose(image.rgb[radius < 0.9], 3)
+
+
 @pytest.mark.parametrize("gap", [1e-6, 1e-3])
 def test_sheets_a_millionth_apart_are_two(gap):
     # From below a black sheet hides a lamp; from above the lamp is visible, and nothing leaks either way.

@@ -1,6 +1,6 @@
-//! What paths from lights are followed for: aimed emission (`aimed_emission`) and connections to the camera
-//! (`to_camera`). MIS weights combine them with other strategies (`mis_weights`, `light_ends`). The paths themselves
-//! are in `wavefront`, and photon maps in `photon_map`.
+//! Emission aimed at specular objects (`aimed_emission`) and connections of light paths to the camera (`to_camera`).
+//! MIS weights combine them with other strategies (`mis_weights`, `light_ends`). The paths themselves are in
+//! `wavefront`, and photon maps in `photon_map`.
 
 mod aimed_emission;
 mod light_ends;

@@ -1,11 +1,10 @@
-//! Media along rays: which one is where, the way to a scattering event, and what is left of light.
+//! Media along rays: lookup, distances to scattering events, transmittance, and reuse of paths.
 
 mod cubic_segments;
 pub(super) mod current_medium;
 pub(super) mod distance_sampling;
 pub(super) mod equiangular;
 pub(super) mod hit_classification;
-pub(super) mod medium_traversal;
 pub(super) mod optical_depth;
 pub(super) mod path_numbers;
 pub(super) mod path_reuse;

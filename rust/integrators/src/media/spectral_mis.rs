@@ -1,7 +1,6 @@
 //! Spectral MIS weights of paths.
 
 use raywright_optics::Rgb;
-use raywright_optics::spectra::Waves;
 
 /// Path weights for three wavelengths, all relative to the density of the hero's path sampling. So the hero's own
 /// density is 1, and the mean of the three is at least a third.
@@ -23,18 +22,6 @@ impl Weights {
     #[inline]
     pub fn throughput(&self) -> Rgb {
         self.carried / self.drawn.mean()
-    }
-
-    /// Keep the light of the first wavelength, the hero, which then stands for all three. No other wavelength could
-    /// sample the rest of the path, so only its own density counts for the path so far.
-    pub fn end_all_but_hero(&mut self) {
-        let (carried, asked) = (Waves::ended(self.carried), Rgb::splat(self.asked[0]));
-        *self = Self { carried, drawn: Rgb::ONE, asked };
-    }
-
-    /// Keep the light of the first wavelength if any of the three may sample distances.
-    pub fn end_all_but_first(&mut self) {
-        *self = Self { carried: Waves::ended(self.throughput()), ..Self::START };
     }
 
     /// Multiply all three.

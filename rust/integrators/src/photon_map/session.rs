@@ -9,13 +9,12 @@ use super::photon_tracing::{Maps, PhotonIndex, fly};
 use super::radius::NEIGHBOURS;
 use super::volume_estimate::room;
 use super::volume_photon::VolumeIndex;
-use crate::begin_paths::begin_with;
 use crate::known_light::{Gather, KnownLight, Visit};
 use crate::media::current_medium::Filled;
 use crate::media::scattering::Scattering;
 use crate::nesting::MediumStack;
 use crate::path_settings::PathSettings;
-use crate::wavefront::Limits;
+use crate::wavefront::{Limits, Wavefront};
 use crate::{Job, Session, Worker};
 use raywright_base::workers::Cancel;
 use raywright_optics::spectra::Waves;
@@ -89,7 +88,7 @@ pub(super) struct Mapped<'a> {
     /// `None` if there are no lights or nothing scatters their light.
     emitters: Option<Emitters<'a>>,
     known: Arc<Known<'a>>,
-    seen: Box<dyn Session + 'a>,
+    seen: Wavefront<'a>,
 }
 
 impl<'a> Mapped<'a> {
@@ -123,7 +122,7 @@ impl<'a> Mapped<'a> {
         let gather = Some(Gather { rays: gather, caustic: sending.caustic });
         let Limits { max_depth, roulette_depth } = limits;
         let settings = PathSettings { gather, ..PathSettings::path(max_depth, roulette_depth) };
-        let seen = begin_with(settings, job, Arc::clone(&known) as Arc<dyn KnownLight + 'a>);
+        let seen = Wavefront::new(job, settings, None, Some(Arc::clone(&known) as Arc<dyn KnownLight + 'a>));
         Self { job, emitters, known, seen }
     }
 }

@@ -1,10 +1,10 @@
 //! Stages of media, nested dielectrics and wavelengths against paths that are followed one by one in f64.
 
 use super::job;
+use super::one_by_one::OneByOne;
 use super::wavefront::assert_equal_samples;
-use crate::one_by_one::OneByOne;
 use crate::path_settings::PathSettings;
-use crate::wavefront::Wavefront;
+use crate::wavefront::{Wavefront, f32_holds};
 use raywright_base::math::DVec3;
 use raywright_optics::{Dispersion, Dispersive, Phase, Rgb};
 use raywright_scene::fixtures::{rectangle, scene, shape};
@@ -48,10 +48,11 @@ const FROM: DVec3 = DVec3::new(0.1, 1.1, 2.5);
 
 #[track_caller]
 fn assert_same(scene: &Scene) {
-    assert!(Wavefront::takes(&job(scene)));
+    assert!(f32_holds(scene));
     let settings = PathSettings::path(Some(DEPTH), u32::MAX);
-    let stages = Wavefront::new(job(scene), settings, None, None);
-    assert_equal_samples(&stages, &OneByOne::new(job(scene), settings, None), FROM);
+    let oracle = OneByOne::new(job(scene), settings);
+    assert_equal_samples(&Wavefront::new(job(scene), settings, None, None), &oracle, FROM);
+    assert_equal_samples(&Wavefront::new(job(scene), settings, None, None).with_light_in_f64(), &oracle, FROM);
 }
 
 pub(super) fn of(shapes: Vec<Shape>, lights: Vec<Arc<dyn Light>>) -> Scene {

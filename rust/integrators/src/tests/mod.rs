@@ -6,6 +6,7 @@ mod glossy;
 mod kinds;
 mod masks;
 mod media;
+mod one_by_one;
 mod path;
 mod reuse;
 mod wavefront;

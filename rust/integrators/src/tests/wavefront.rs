@@ -1,10 +1,10 @@
 //! Wavefront stages against paths that are followed one by one in f64.
 
 use super::kinds::{self, floor};
+use super::one_by_one::OneByOne;
 use super::{job, samples_of};
-use crate::one_by_one::OneByOne;
 use crate::path_settings::{Follow, PathSettings};
-use crate::wavefront::Wavefront;
+use crate::wavefront::{Wavefront, f32_holds};
 use crate::{CameraSample, Guide, Guiding, Integrator, Path, Session};
 use raywright_base::math::{DVec3, Ray, Vec3};
 use raywright_base::sampling::{Sampler, warp};
@@ -39,15 +39,16 @@ fn found(session: &dyn Session, from: DVec3, count: u32) -> Vec<Rgb> {
 /// side.
 #[track_caller]
 fn assert_same(scene: &Scene, from: DVec3) {
-    assert!(Wavefront::takes(&job(scene)));
+    assert!(f32_holds(scene));
     assert_same_by(scene, PathSettings::path(Some(DEPTH), u32::MAX), from);
 }
 
 /// The same for an integrator's settings.
 #[track_caller]
 pub(super) fn assert_same_by(scene: &Scene, settings: PathSettings, from: DVec3) {
-    let stages = Wavefront::new(job(scene), settings, None, None);
-    assert_equal_samples(&stages, &OneByOne::new(job(scene), settings, None), from);
+    let oracle = OneByOne::new(job(scene), settings);
+    assert_equal_samples(&Wavefront::new(job(scene), settings, None, None), &oracle, from);
+    assert_equal_samples(&Wavefront::new(job(scene), settings, None, None).with_light_in_f64(), &oracle, from);
 }
 
 #[track_caller]
@@ -72,7 +73,7 @@ fn assert_same_mean(scene: &Scene, from: DVec3) {
 /// The same, with paths that are guided.
 #[track_caller]
 fn assert_same_mean_as(scene: &Scene, guide: Option<Arc<Guide>>, from: DVec3) {
-    assert!(Wavefront::takes(&job(scene)));
+    assert!(f32_holds(scene));
     let settings = PathSettings::path(Some(DEPTH), u32::MAX);
     let mean = |session: &dyn Session| {
         let values = found(session, from, 200_000);
@@ -81,7 +82,7 @@ fn assert_same_mean_as(scene: &Scene, guide: Option<Arc<Guide>>, from: DVec3) {
         (mean[1], square / (values.len() as f64).powi(2))
     };
     let (got, one) = mean(&Wavefront::new(job(scene), settings, guide, None));
-    let (wanted, other) = mean(&OneByOne::new(job(scene), settings, None));
+    let (wanted, other) = mean(&OneByOne::new(job(scene), settings));
     let error = (one + other).sqrt();
     assert!(error < 0.02 * wanted && (got - wanted).abs() < 4.0 * error, "{got}, not {wanted} ± {error}");
 }
@@ -235,7 +236,7 @@ fn points_on_large_triangles_are_as_near_as_on_small_ones() {
     for size in [2f32, 2e3, 2e6] {
         let ground = rectangle([-0.45 * size, -0.55 * size, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]);
         let scene = scene(SceneDescription { shapes: vec![shape(ground, [0.5; 3], 0.0)], lights: lights.clone() });
-        assert!(Wavefront::takes(&job(&scene)));
+        assert!(f32_holds(&scene));
         let mut samples = [0, 1, 2, 3].map(|number| CameraSample { ray, sampler: Sampler::new(3, 7, number) });
         let mut values = [Rgb::ZERO; 4];
         let session = Wavefront::new(job(&scene), PathSettings::path(None, 4), None, None);
@@ -257,7 +258,7 @@ fn guided_paths_find_on_average_what_others_find() {
     for scene in [&glass, &pane] {
         let path =
             Path { max_depth: Some(DEPTH), roulette_depth: u32::MAX, guiding: Guiding::Photons, ..Path::default() };
-        assert!(Wavefront::takes(&job(scene)) && path.guiding_in(scene) == Guiding::Photons);
+        assert!(f32_holds(scene) && path.guiding_in(scene) == Guiding::Photons);
         let guide = Guide::of(scene, &Cancel::default());
         assert!(guide.is_some());
         assert_same_mean_as(scene, guide, eye);
@@ -283,7 +284,7 @@ fn what_a_sample_finds_depends_on_no_other() {
     let open = scene(SceneDescription { shapes: inside(), lights: vec![sky] });
     for scene in [&lit, &open] {
         let job = job(scene);
-        assert!(Wavefront::takes(&job));
+        assert!(f32_holds(job.scene));
         let path = Path { guiding: Guiding::Photons, ..Path::default() };
         let session = path.begin(job, &Cancel::default());
         let samples: Vec<_> = (0..5000)

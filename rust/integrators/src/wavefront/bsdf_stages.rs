@@ -20,6 +20,9 @@ impl WavefrontWorker<'_> {
             self.evaluate_materials(numbers, bounce);
             self.correct_repeats();
         });
+        if self.takes_f64 {
+            self.block.bsdf.asks_each = [false; LANES];
+        }
         self.look_up_light(bounce, radiance);
         if bounce < 2 && self.sharing.is_some() {
             for lane in 0..self.block.surfaces.count {
@@ -37,7 +40,13 @@ impl WavefrontWorker<'_> {
         if !self.scene.lights().is_dark() && self.block.bsdf.asks.contains(&true) {
             let count = self.light_samples(bounce);
             for number in 0..count {
-                timed(Part::Light, || self.ask_for_light_of_any(numbers, bounce, (number, count)));
+                timed(Part::Light, || {
+                    if self.takes_f64 {
+                        self.ask_for_light_in_f64(bounce, (number, count), samples);
+                    } else {
+                        self.ask_for_light_of_any(numbers, bounce, (number, count));
+                    }
+                });
             }
         }
         if self.follows {

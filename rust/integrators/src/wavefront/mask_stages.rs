@@ -75,7 +75,8 @@ impl WavefrontWorker<'_> {
         shadows.clear();
         for i in (0..queue.rays.len).filter(|&i| self.is_occluded[i]) {
             shadows.push(&queue.rays.get(i));
-            shadows.bring(self.receiver(i) as u32, Rgb::new(r[i].into(), g[i].into(), b[i].into()));
+            let light = Rgb::new(r[i].into(), g[i].into(), b[i].into()) * self.light_of(i);
+            shadows.bring(self.receiver(i) as u32, light);
         }
         shadows.add_through(self.scene, radiance);
         if let Some(masks) = &mut self.masks {

@@ -13,6 +13,7 @@ mod emission;
 mod flights;
 mod groups;
 mod guided;
+mod light_in_f64;
 mod mask_stages;
 mod masks;
 mod matte;
@@ -38,7 +39,8 @@ pub(super) use subpaths::{Arrival, Connection, Subpath, SubpathSink, VertexConte
 
 use super::known_light::KnownLight;
 use super::path_settings::PathSettings;
-use super::{Guide, Job, Session, Worker, narrow_views};
+use super::{Guide, Job, Session, Worker};
+use raywright_scene::Scene;
 use std::sync::Arc;
 use worker::WavefrontWorker;
 
@@ -50,12 +52,14 @@ pub(super) struct Wavefront<'a> {
     guide: Option<Arc<Guide>>,
     /// Known light at matte surfaces and in media, if any.
     known: Option<Arc<dyn KnownLight + 'a>>,
+    /// True if light is drawn in f64.
+    takes_f64: bool,
 }
 
 /// Radiances that f32 holds, with the squares of numbers that follow from them.
 const RADIANCES: std::ops::Range<f64> = 1e-15..1e15;
 
-/// Sizes of scenes in which f32 holds the products of three lengths, also where a lamp is a thousandth of the scene.
+/// Sizes of scenes whose products of three lengths f32 holds, even for a lamp a thousandth as large.
 const SIZES: std::ops::Range<f64> = 1e-9..1e12;
 
 impl<'a> Wavefront<'a> {
@@ -66,23 +70,30 @@ impl<'a> Wavefront<'a> {
         guide: Option<Arc<Guide>>,
         known: Option<Arc<dyn KnownLight + 'a>>,
     ) -> Self {
-        Self { job, settings, guide, known }
+        let takes_f64 = !f32_holds(job.scene);
+        let shares = settings.shares && !takes_f64;
+        Self { job, settings: PathSettings { shares, ..settings }, guide, known, takes_f64 }
     }
 
-    /// Return whether f32 holds the radiances and lengths of a scene, and tells the pixels of its picture apart.
-    pub fn takes(job: &Job<'_>) -> bool {
-        let mut radiances = job.scene.lights().radiances();
-        let size = job.scene.region().radius;
-        // Infinite planes tell no size.
-        let is_usual = size == 0.0 || !size.is_finite() || SIZES.contains(&size);
-        is_usual
-            && narrow_views::are_wide_enough(job)
-            && radiances.all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
+    /// The same, with light that is drawn in f64.
+    #[cfg(test)]
+    pub fn with_light_in_f64(self) -> Self {
+        Self { takes_f64: true, ..self }
     }
+}
+
+/// Return whether f32 holds the radiances of a scene, and products of its lengths. Elsewhere light is drawn in f64, and
+/// paths are neither guided nor share.
+pub(super) fn f32_holds(scene: &Scene) -> bool {
+    let size = scene.region().radius;
+    // Infinite planes tell no size.
+    let is_usual = size == 0.0 || !size.is_finite() || SIZES.contains(&size);
+    is_usual && scene.lights().radiances().all(|radiance| radiance == 0.0 || RADIANCES.contains(&radiance))
 }
 
 impl Session for Wavefront<'_> {
     fn worker(&self) -> Box<dyn Worker + '_> {
-        Box::new(WavefrontWorker::new(&self.job, self.settings, self.guide.as_deref(), self.known.as_deref()))
+        let (guide, known) = (self.guide.as_deref(), self.known.as_deref());
+        Box::new(WavefrontWorker::new(&self.job, self.settings, (guide, known), self.takes_f64))
     }
 }

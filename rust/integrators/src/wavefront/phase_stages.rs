@@ -30,7 +30,13 @@ impl WavefrontWorker<'_> {
             self.gather_waves();
             self.gather_numbers(samples, numbers);
             if !self.scene.lights().is_dark() {
-                timed(Part::Light, || self.ask_for_light_in_medium((some, number, seconds), numbers, bounce, samples));
+                timed(Part::Light, || {
+                    if self.takes_f64 {
+                        self.ask_for_light_in_medium_in_f64((some, number), bounce, samples);
+                    } else {
+                        self.ask_for_light_in_medium((some, number, seconds), numbers, bounce, samples);
+                    }
+                });
             }
             if self.follows {
                 timed(Part::Continuation, || {

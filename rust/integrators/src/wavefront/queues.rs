@@ -293,20 +293,23 @@ impl ShadowQueue {
         lengthen(&mut self.media, room);
     }
 
-    /// Appends a ray of a sample in some media, whose light is 1.
-    pub fn push_ray(&mut self, ray: &Ray, sample: u32, media: u32) {
+    /// Appends a ray or segment of a sample in some media, whose light is 1. `ratio` is the density of scattering over
+    /// that of light sampling.
+    pub fn push_ray(&mut self, ray: &Ray, sample: u32, media: u32, ratio: f32) {
         let to = self.rays.len;
         if self.sample.len() < to + LANES {
             self.grow(2 * (to + LANES));
         }
+        let length = ray.direction.length();
         for axis in 0..3 {
             self.rays.origin[axis][to] = ray.origin[axis];
-            self.rays.direction[axis][to] = ray.direction[axis] as f32;
+            self.rays.direction[axis][to] = (ray.direction[axis] / length) as f32;
             self.arriving[axis][to] = 1.0;
         }
-        (self.rays.t_max[to], self.rays.misses[to], self.sample[to]) = (ray.t_max, ray.misses, sample);
-        if let (Some(of), Some(ratio)) = (self.media.get_mut(to), self.ratio.get_mut(to)) {
-            (*of, *ratio) = (media, 0.0);
+        let t_max = if ray.t_max == f64::INFINITY { f64::INFINITY } else { PathRays::END * length };
+        (self.rays.t_max[to], self.rays.misses[to], self.sample[to]) = (t_max, ray.misses, sample);
+        if let (Some(of), Some(to)) = (self.media.get_mut(to), self.ratio.get_mut(to)) {
+            (*of, *to) = (media, ratio);
         }
         if let Some(time) = self.rays.time.get_mut(to) {
             *time = ray.time;

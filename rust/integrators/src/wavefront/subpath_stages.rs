@@ -5,10 +5,10 @@ use super::subpaths::{Arrival, Connection, Subpath, SubpathSink, VertexContext};
 use super::waves::{self, PathWaves};
 use super::worker::WavefrontWorker;
 use crate::dimensions::{Dimensions, EmissionDimensions};
-use crate::media::medium_traversal::MediumTraversal;
-use crate::media::path_numbers::{FurtherNumbers, PathNumbers};
+use crate::media::distance_sampling::MediumSegment;
+use crate::media::path_numbers::FurtherNumbers;
 use crate::media::scattering::Scattering;
-use crate::nesting::MediumStack;
+use crate::media::spectral_mis::Weights;
 use crate::path_settings::PathSettings;
 use crate::path_vertices::{Onward, Point, Vertex};
 use crate::{CameraSample, CameraSamples, Job, is_matt, roulette};
@@ -55,7 +55,7 @@ pub(crate) struct SubpathWavefront<'a> {
     before: Vec<Rgb>,
 }
 
-/// SubpathEmission of light subpaths.
+/// Emission of light subpaths.
 pub(crate) struct SubpathEmission<'e, 'a> {
     pub emitters: &'e Emitters<'a>,
     /// Camera whose shutter interval they fall into; without one, any scene time.
@@ -65,6 +65,23 @@ pub(crate) struct SubpathEmission<'e, 'a> {
 
 fn rgb(v: Vec3) -> Rgb {
     Rgb::from_array(v.as_dvec3().to_array())
+}
+
+/// Return flux from infinity that the surrounding medium leaves along a ray back to its light.
+fn come_from_afar(
+    scene: &Scene,
+    flux: Rgb,
+    back: Ray,
+    waves: Option<Waves>,
+    sampler: &Sampler,
+    cancel: &Cancel,
+) -> Rgb {
+    let Some(medium) = scene.surrounding() else { return flux };
+    let (span, length) = ([0.0, f64::INFINITY], 1.0);
+    let segment = MediumSegment { medium, ray: back, span, length, scatters: true, roulette: false, waves };
+    let mut weights = Weights { carried: flux, ..Weights::START };
+    segment.fade(&mut weights, &mut None, &mut FurtherNumbers::new(sampler.apart()), cancel);
+    weights.carried / weights.asked.mean()
 }
 
 impl SubpathEmission<'_, '_> {
@@ -88,7 +105,7 @@ impl SubpathEmission<'_, '_> {
 impl<'a> SubpathWavefront<'a> {
     /// Subpaths from lights.
     pub fn of_lights(scene: &'a Scene, limits: Limits) -> Self {
-        // SubpathEmission counts as the first bounce.
+        // Emission counts as the first bounce.
         let settings = PathSettings::path(None, limits.roulette_depth.saturating_add(1));
         Self::new(WavefrontWorker::of_lights(scene, settings), limits)
     }
@@ -189,10 +206,7 @@ impl<'a> SubpathWavefront<'a> {
             let mut left = flux;
             if light.is_infinite && scene.surrounding().is_some() {
                 let back = Ray { time: of_scene, ..Ray::new(ray.origin, -ray.direction) };
-                let mut further = FurtherNumbers::new(sampler.apart());
-                let mut numbers = PathNumbers::new(sampler, &mut further);
-                let course = MediumTraversal::alone(scene, waves);
-                left = course.through(flux, back, MediumStack::NONE, &mut numbers, cancel);
+                left = come_from_afar(scene, flux, back, waves, sampler, cancel);
                 sink.absorb(flux - left);
             }
             if !left.is_black() {

@@ -3,7 +3,7 @@
 use super::queues::{Flags, ShadowQueue};
 use crate::dimensions::Dimensions;
 use crate::path_vertices::{Onward, Vertex};
-use raywright_base::math::{DVec3, PathRays, Ray, Vec3};
+use raywright_base::math::{DVec3, Ray, Vec3};
 use raywright_base::sampling::{Sampler, SamplerColumns};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
@@ -139,11 +139,8 @@ impl VertexContext<'_> {
         if light.is_black() || !light.is_finite() {
             return;
         }
-        let length = segment.direction.length();
         let is_behind = segment.direction.dot(at.normal) < 0.0;
-        let t_max = if segment.t_max == f64::INFINITY { f64::INFINITY } else { PathRays::END * length };
-        let ray = Ray { direction: segment.direction / length, t_max, ..*segment };
-        self.shadows.push_ray(&ray, self.sample, self.media[usize::from(is_behind)]);
+        self.shadows.push_ray(segment, self.sample, self.media[usize::from(is_behind)], 0.0);
         self.connections.push(Connection { sample: self.sample, film, light });
     }
 }

@@ -125,7 +125,7 @@ impl WavefrontWorker<'_> {
             flights.step(scene, self.level, &mut shadows);
         }
         for (i, &(sample, arriving)) in self.arriving.iter().enumerate() {
-            radiance[if joins { i } else { sample as usize }] += arriving;
+            radiance[if joins { i } else { sample as usize }] += arriving * self.light_of(i);
         }
     }
 }

@@ -12,10 +12,11 @@ use super::waves::{self, PathWaves, WavesBlock};
 use super::ways::Way;
 use crate::known_light::KnownLight;
 use crate::media::current_medium::Filled;
+use crate::narrow_views::CameraStart;
 use crate::nesting::MediumStack;
 use crate::path_settings::{Follow, PathSettings};
 use crate::path_sharing::PathSharing;
-use crate::{CameraSample, CameraSamples, Guide, Job, Worker, narrow_views, roulette};
+use crate::{CameraSample, CameraSamples, Guide, Job, Worker, roulette};
 use raywright_accel::Primitives;
 use raywright_base::math::{DVec3, Hit, LANES, Ray, SingleLanes, Vec3, VectorLanes, gather};
 use raywright_base::sampling::{SamplerColumns, SamplerLanes};
@@ -37,8 +38,10 @@ pub(super) struct WavefrontWorker<'a> {
     /// That of a camera's ray.
     pub(super) footprint: Footprint,
     pub(super) settings: PathSettings,
-    /// True if camera rays start close to the scene ([`narrow_views`]).
-    pub(super) approaches: bool,
+    pub(super) camera_start: CameraStart,
+    /// True if light is drawn in f64 ([`super::light_in_f64`]); and then the light of each shadow ray, which has 1.
+    pub(super) takes_f64: bool,
+    pub(super) in_f64: Vec<Rgb>,
     /// Where subpaths start whose vertices go to a sink; `None` for whole paths.
     pub(super) end: Option<End>,
     /// True if paths go on from surfaces; and true if matte surfaces need no more than their own stages.
@@ -194,30 +197,31 @@ impl<'a> WavefrontWorker<'a> {
     pub fn new(
         job: &Job<'a>,
         settings: PathSettings,
-        guide: Option<&'a Guide>,
-        known: Option<&'a dyn KnownLight>,
+        known: (Option<&'a Guide>, Option<&'a dyn KnownLight>),
+        takes_f64: bool,
     ) -> Self {
-        Self::with(job.scene, Some(job), None, settings, (guide, known))
+        Self::with(job.scene, Some(job), (None, takes_f64), settings, known)
     }
 
     /// For light subpaths.
     pub fn of_lights(scene: &'a Scene, settings: PathSettings) -> Self {
-        Self::with(scene, None, Some(End::Light), settings, (None, None))
+        Self::with(scene, None, (Some(End::Light), false), settings, (None, None))
     }
 
     /// For camera subpaths.
     pub fn of_camera(job: &Job<'a>, settings: PathSettings) -> Self {
-        Self::with(job.scene, Some(job), Some(End::Camera), settings, (None, None))
+        Self::with(job.scene, Some(job), (Some(End::Camera), false), settings, (None, None))
     }
 
     fn with(
         scene: &'a Scene,
         job: Option<&Job<'a>>,
-        end: Option<End>,
+        (end, takes_f64): (Option<End>, bool),
         settings: PathSettings,
         (guide, known): (Option<&'a Guide>, Option<&'a dyn KnownLight>),
     ) -> Self {
-        let (is_plain, PathSettings { shares, scatters, .. }) = (settings.are_plain(), settings);
+        let PathSettings { shares, scatters, .. } = settings;
+        let is_plain = settings.are_plain() && !takes_f64;
         let (is_whole, level) = (end.is_none(), Level::current().unwrap_or(Level::Scalar));
         let is_light = matches!(end, Some(End::Light));
         let needs = scene.plan().needs();
@@ -253,7 +257,9 @@ impl<'a> WavefrontWorker<'a> {
             level,
             seed: job.map_or(0, |job| job.seed),
             footprint: job.map_or_else(Footprint::default, |job| job.footprint),
-            approaches: job.is_some_and(narrow_views::approaches),
+            camera_start: job.map_or(CameraStart::AtCamera, CameraStart::of),
+            takes_f64,
+            in_f64: Vec::new(),
             settings: PathSettings { roulette_depth: settings.roulette_depth.min(roulette::AT_LATEST), ..settings },
             end,
             follows: settings.follow != Follow::Nothing,
@@ -323,12 +329,16 @@ impl<'a> WavefrontWorker<'a> {
             queue.width[..count].fill(self.footprint.width as f32);
             queue.spread[..count].fill(self.footprint.spread as f32);
         }
-        if self.approaches {
-            for (i, from) in some.clone().enumerate() {
-                let [origin, direction] =
-                    [&samples.origin, &samples.direction].map(|all| DVec3::from(all.each_ref().map(|axis| axis[from])));
-                let way = narrow_views::approach(self.scene, origin, direction);
-                let start = origin + direction * way;
+        if self.camera_start != CameraStart::AtCamera {
+            let vector =
+                |columns: &[Vec<f64>; 3], i: usize| DVec3::from_array(columns.each_ref().map(|column| column[i]));
+            let ray = |i: usize| {
+                let time = samples.time[i];
+                Ray { time, ..Ray::new(vector(&samples.origin, i), vector(&samples.direction, i)) }
+            };
+            let rays: Vec<Ray> = some.clone().map(ray).collect();
+            for (i, (ray, way)) in rays.iter().zip(self.camera_start.ways(self.scene, &rays)).enumerate() {
+                let start = ray.at(way);
                 (0..3).for_each(|axis| queue.rays.origin[axis][i] = start[axis]);
                 if self.extra.width {
                     queue.width[i] = self.footprint.at(way).width as f32;
@@ -423,6 +433,11 @@ impl<'a> WavefrontWorker<'a> {
         if self.end.is_some() { ray } else { self.shadows.sample[ray] as usize }
     }
 
+    /// Return the light of a shadow ray, relative to its column.
+    pub(super) fn light_of(&self, ray: usize) -> Rgb {
+        self.in_f64.get(ray).copied().unwrap_or(Rgb::ONE)
+    }
+
     /// Return the media of a number; none in scenes without.
     pub(super) fn stack(&self, number: u32) -> MediumStack<Filled> {
         self.flights.as_ref().map_or(MediumStack::NONE, |flights| flights.stacks.get(number).media)
@@ -460,7 +475,7 @@ impl<'a> WavefrontWorker<'a> {
         let [r, g, b] = &queue.arriving;
         for (i, &is_occluded) in self.is_occluded[..queue.rays.len].iter().enumerate() {
             if !is_occluded {
-                radiance[self.receiver(i)] += Rgb::new(r[i].into(), g[i].into(), b[i].into());
+                radiance[self.receiver(i)] += Rgb::new(r[i].into(), g[i].into(), b[i].into()) * self.light_of(i);
             }
         }
         self.dim_by_masks(radiance);
@@ -523,6 +538,7 @@ impl<'a> WavefrontWorker<'a> {
     ) {
         self.make_room(self.paths[0].rays.len);
         self.shadows.rays.len = 0;
+        self.in_f64.clear();
         if self.media.is_some() {
             timed(Part::Closest, || self.fly(numbers, bounce, samples, cancel, radiance));
         } else {

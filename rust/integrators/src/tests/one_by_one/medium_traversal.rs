@@ -1,11 +1,11 @@
 //! Medium traversal between scattering events.
 
-use super::current_medium::{self, Filled};
-use super::distance_sampling::{Collision, MediumSegment};
-use super::hit_classification::{ClassifiedHit, meet, straight};
 use super::path_numbers::PathNumbers;
-use super::scattering::Scattering;
-use super::spectral_mis::Weights;
+use crate::media::current_medium::{self, Filled};
+use crate::media::distance_sampling::{Collision, MediumSegment};
+use crate::media::hit_classification::{ClassifiedHit, meet, straight};
+use crate::media::scattering::Scattering;
+use crate::media::spectral_mis::Weights;
 use crate::nesting::MediumStack;
 use crate::shadows::opacity;
 use raywright_base::math::{Hit, Ray};
@@ -17,7 +17,7 @@ use raywright_scene::media::Coefficients;
 
 /// Constant parameters of a traversal.
 #[derive(Clone, Copy)]
-pub(crate) struct MediumTraversal<'a> {
+pub(super) struct MediumTraversal<'a> {
     pub scene: &'a Scene,
     /// False if media only attenuate.
     pub scatters: bool,
@@ -30,14 +30,14 @@ pub(crate) struct MediumTraversal<'a> {
 
 /// The state of a traversal: ray, path weights and media.
 #[derive(Clone, Copy)]
-pub(crate) struct RaySegmentState {
+pub(super) struct RaySegmentState {
     pub ray: Ray,
     pub weights: Weights,
     pub media: MediumStack<Filled>,
 }
 
 /// The end of a traversal.
-pub(crate) enum TraversalEnd {
+pub(super) enum TraversalEnd {
     /// A scattering event, and the span of the ray in its medium.
     Medium { here: Scattering, collision: Collision, span: [f64; 2] },
     /// A surface.
@@ -68,15 +68,10 @@ enum SegmentEnd {
 }
 
 /// Returns the light that reaches a path along a span of its ray in a homogeneous scattering medium.
-pub(crate) type OnTheWay<'o> =
+pub(super) type OnTheWay<'o> =
     &'o dyn Fn(&RaySegmentState, [f64; 2], (&Coefficients, Phase), &mut PathNumbers<'_>) -> Rgb;
 
 impl<'a> MediumTraversal<'a> {
-    /// Make the traversal of paths that media scatter.
-    pub fn alone(scene: &'a Scene, waves: Option<Waves>) -> Self {
-        Self { scene, scatters: true, roulette: false, waves }
-    }
-
     /// Advance a path along its ray to the next scattering event; `None` if its weight is zero. `way` is the optical
     /// depth of its hero before the event, sampled once for all media along the ray. Emission along the way is added to
     /// `light`.
@@ -238,21 +233,5 @@ impl<'a> MediumTraversal<'a> {
             return meet(self.scene, ray, hit, media);
         }
         ClassifiedHit::Surface { hit: *hit, outside: 1.0, through: *media, beyond: hit.t.next_up() }
-    }
-
-    /// Return the transmitted share of some light along a ray that starts in given media, unbiased in heterogeneous
-    /// media. The light may have been sampled by another wavelength. The mean of the product is the product of the
-    /// means only for independent choices.
-    pub fn through(
-        &self,
-        light: Rgb,
-        ray: Ray,
-        media: MediumStack<Filled>,
-        numbers: &mut PathNumbers<'_>,
-        cancel: &Cancel,
-    ) -> Rgb {
-        let mut weights = Weights { carried: light, ..Weights::START };
-        self.shadow(ray, media, &mut weights, &mut None, numbers, cancel);
-        weights.carried / weights.asked.mean()
     }
 }

@@ -34,13 +34,8 @@ pub(super) struct PathState {
     /// Wavelengths, `None` for RGB; and true if only the hero is left.
     pub waves: Option<Waves>,
     pub single: bool,
-    /// True if other paths share the wavelengths, and any of them may be the hero.
-    pub shares_waves: bool,
     /// Number of paths that it is split into here; 0 if it ends.
     pub splits: f64,
-    /// True for a final gather ray; and true if a specular surface followed.
-    pub is_gathered: bool,
-    pub is_sharp_since: bool,
     /// Footprint at the ray's origin, if texture lookups use it; and the mean curvature of the surface there.
     pub footprint: Footprint,
     pub curvature: f64,
@@ -62,10 +57,7 @@ impl PathState {
             has_gamut_excess: false,
             waves,
             single: false,
-            shares_waves: false,
             splits: 1.0,
-            is_gathered: false,
-            is_sharp_since: false,
             footprint: Footprint::default(),
             curvature: 0.0,
         }
@@ -98,7 +90,7 @@ impl PathState {
             Some(_) if next.is_through => self.end_all_but_hero(),
             Some(parting) if !self.single => {
                 let by = parting.mirrored(wo);
-                self.weights.times(by, if self.shares_waves { Rgb::ONE } else { by }, Rgb::ONE);
+                self.weights.times(by, by, Rgb::ONE);
             }
             _ => {}
         }
@@ -107,11 +99,7 @@ impl PathState {
     /// Terminate all wavelengths but the hero, which then stands for all.
     pub fn end_all_but_hero(&mut self) {
         if !self.single {
-            if self.shares_waves {
-                self.weights.end_all_but_first();
-            } else {
-                self.weights.end_all_but_hero();
-            }
+            self.weights.end_all_but_hero();
             (self.waves, self.single) = (self.waves.map(|waves| waves.alone()), true);
         }
     }
@@ -125,5 +113,14 @@ impl PathState {
             }
             self.has_gamut_excess = true;
         }
+    }
+}
+
+impl Weights {
+    /// Keep the light of the first wavelength, the hero, which then stands for all three. No other wavelength could
+    /// sample the rest of the path, so only its own density counts for the path so far.
+    pub fn end_all_but_hero(&mut self) {
+        let (carried, asked) = (Waves::ended(self.carried), Rgb::splat(self.asked[0]));
+        *self = Self { carried, drawn: Rgb::ONE, asked };
     }
 }

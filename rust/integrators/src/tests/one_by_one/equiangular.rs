@@ -1,8 +1,8 @@
 //! Equiangular sampling of point lights along rays.
 
 use super::camera_paths::Walker;
+use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
-use crate::media::path_numbers::PathNumbers;
 use crate::media::scattering::Scattering;
 use crate::media::spectral_mis::Weights;
 use crate::mis_weight::power_heuristic;

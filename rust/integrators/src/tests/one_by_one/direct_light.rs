@@ -1,10 +1,10 @@
 //! Light sampling at scattering events.
 
 use super::camera_paths::Walker;
+use super::medium_traversal::MediumTraversal;
+use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
 use crate::media::current_medium::Filled;
-use crate::media::medium_traversal::MediumTraversal;
-use crate::media::path_numbers::PathNumbers;
 use crate::media::spectral_mis::Weights;
 use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;

@@ -1,12 +1,12 @@
 //! Camera paths that are followed one by one.
 
+use super::medium_traversal::{MediumTraversal, OnTheWay, RaySegmentState, TraversalEnd};
+use super::path_numbers::PathNumbers;
 use super::path_state::PathState;
 use crate::dimensions::Dimensions;
-use crate::known_light::KnownLight;
 use crate::media::current_medium::Filled;
 use crate::media::equiangular::{PointLights, ScatteringSpan};
-use crate::media::medium_traversal::{MediumTraversal, OnTheWay, RaySegmentState, TraversalEnd};
-use crate::media::path_numbers::{FurtherNumbers, PathNumbers, depth};
+use crate::media::path_numbers::{FurtherNumbers, depth};
 use crate::media::scattering::Scattering;
 use crate::mis_weight::power_heuristic;
 use crate::nesting::MediumStack;
@@ -35,8 +35,6 @@ pub(super) struct Walker<'a> {
     pub(super) footprint: Option<Footprint>,
     /// Point lights.
     pub(super) points: &'a PointLights<'a>,
-    /// Precomputed light at scattering events, if any.
-    pub(super) known: Option<&'a dyn KnownLight>,
 }
 
 impl<'a> Walker<'a> {
@@ -50,34 +48,21 @@ impl<'a> Walker<'a> {
     ) -> Rgb {
         let mut light = Rgb::ZERO;
         let u = sample.sampler.one(Dimensions::WAVES);
-        let number = sample.sampler.number();
-        let waves = match self.known {
-            Some(known) => known.waves(number),
-            None => self.scene.plan().needs().waves.then(|| Waves::of(u)),
-        };
+        let waves = self.scene.plan().needs().waves.then(|| Waves::of(u));
         let mut further = FurtherNumbers::new(sample.sampler.paired());
         let mut numbers = PathNumbers::new(&mut sample.sampler, &mut further);
-        // The first wavelength is the hero, unless other paths share the wavelengths: dispersion terminates all but the
-        // first. The wavelength that samples distances must be independent of that. For RGB it is any of the three.
-        let hero = match (waves, self.known) {
-            (Some(_), Some(_)) => numbers.more.hero(),
-            (Some(_), None) => 0,
-            (None, _) => ((u * 3.0) as usize).min(2),
-        };
+        // The first wavelength is the hero: dispersion ends all but that. Of red, green and blue it is any.
+        let hero = if waves.is_some() { 0 } else { ((u * 3.0) as usize).min(2) };
         let path = PathState::of_camera(sample.ray, media, waves);
         waiting.clear();
         let footprint = self.footprint.unwrap_or_default();
-        waiting.push(PathState { shares_waves: self.known.is_some(), footprint, ..path });
+        waiting.push(PathState { footprint, ..path });
         while let Some(mut path) = waiting.pop() {
             while !cancel.is_raised() {
                 numbers.ray = Dimensions::of(path.bounce, path.branch);
                 let place = self.advance(&mut path, hero, &mut numbers, cancel, &mut light);
                 let Some(place) = place else { break };
                 let goes_on = match place {
-                    TraversalEnd::Medium { here, .. } if self.known.is_some() => {
-                        light += self.known_among(&path, &here, number);
-                        false
-                    }
                     TraversalEnd::Medium { here, collision, span } => {
                         path.come_to(collision.t, 0.0);
                         let part = collision.density.map(|density| ScatteringSpan {
@@ -90,8 +75,8 @@ impl<'a> Walker<'a> {
                         self.scatter(&mut path, &here, part, hero, &mut numbers, cancel, &mut light)
                     }
                     TraversalEnd::Surface { hit, outside, through } => {
-                        let (at, of) = ((hit, outside, through), (hero, number));
-                        self.reflect(&mut path, at, of, waiting, &mut numbers, cancel, &mut light)
+                        let at = (hit, outside, through);
+                        self.reflect(&mut path, at, hero, waiting, &mut numbers, cancel, &mut light)
                     }
                     TraversalEnd::Outside => false,
                 };
@@ -141,7 +126,7 @@ impl<'a> Walker<'a> {
     /// Return whether point lights are sampled along the path through homogeneous media.
     fn is_lit(&self, path: &PathState) -> bool {
         let may_scatter = self.settings.max_depth.is_none_or(|most| path.bounce < most);
-        may_scatter && !self.points.is_empty() && self.known.is_none()
+        may_scatter && !self.points.is_empty()
     }
 
     /// Return the weighted light of infinite lights along a path's ray.
@@ -195,7 +180,7 @@ impl<'a> Walker<'a> {
             };
             *light += arrives * weight;
         }
-        let u = numbers.ray.direction();
+        let u = numbers.ray.scattering_choice() + 1;
         let Some(next) = here.sample(&mut || 0.0, numbers.two(u)) else { return false };
         let chance = numbers.ray.roulette();
         self.go_on(path, here, &next, media, numbers.one(chance), self.never_ends())
@@ -207,7 +192,7 @@ impl<'a> Walker<'a> {
         &self,
         path: &mut PathState,
         (hit, outside, through): (Hit, f64, MediumStack<Filled>),
-        (hero, number): (usize, u32),
+        hero: usize,
         waiting: &mut Vec<PathState>,
         numbers: &mut PathNumbers<'_>,
         cancel: &Cancel,
@@ -220,7 +205,7 @@ impl<'a> Walker<'a> {
         let emission = scene.emission_at(&surface);
         let width = if self.footprint.is_some() { path.footprint.at(hit.t).width } else { 0.0 };
         let gaze = LookupContext { width, waves: path.waves };
-        if !emission.is_dark() && !self.is_shining_known(path) {
+        if !emission.is_dark() {
             let sent = emission.sent(geometry, &ray, &hit, &surface, || gaze);
             let cosine = -ray.direction.dot(surface.normal);
             let receiver = LightSampleContext { position: ray.origin, normal: path.normal, waves: path.waves };
@@ -242,11 +227,10 @@ impl<'a> Walker<'a> {
             let share = here.ambient(scene, &ray, &hit, gaze, outside);
             *light += path.weights.throughput() * share * self.settings.ambient;
         }
-        let arrival = self.arrive(path, &here, number, light);
         let is_first = path.bounce == 0 && !here.bsdf().is_delta();
         let splits = if is_first { f64::from(self.settings.splits) } else { 1.0 };
-        path.splits = arrival.splits() * splits;
-        if !here.bsdf().is_delta() && !arrival.is_lit() {
+        path.splits = splits;
+        if !here.bsdf().is_delta() {
             let now = path.media;
             let side = |drawn: &LightSample| if here.is_through(drawn.direction) { through } else { now };
             let often = if path.bounce == 0 { self.settings.light_samples } else { 1 };
@@ -262,20 +246,18 @@ impl<'a> Walker<'a> {
             Follow::Nothing => return false,
             Follow::All | Follow::MinDensity(_) => {}
         }
-        if path.splits > 0.0 && arrival.is_known() || splits > 1.0 {
-            self.look_about(path, &here, through, waiting, numbers);
+        if splits > 1.0 {
+            self.continue_in_several(path, &here, through, waiting, numbers);
             return false;
         }
         let choice = numbers.ray.scattering_choice();
         let u = numbers.two(choice + 1);
         let Some(next) = here.sample(&mut || numbers.one(choice), u) else { return false };
-        // Precomputed light covers all but delta directions.
-        if arrival.is_known() && !next.is_delta() || next.pdf < self.settings.least_pdf() {
+        if next.pdf < self.settings.least_pdf() {
             return false;
         }
         path.splits = 1.0;
         let media = if next.is_through { through } else { path.media };
-        path.is_sharp_since = path.is_gathered;
         let chance = numbers.ray.roulette();
         path.part(later.as_ref(), here.wo(), &next);
         self.go_on(path, &here, &next, media, numbers.one(chance), true)
@@ -305,8 +287,8 @@ impl<'a> Walker<'a> {
         false
     }
 
-    /// Continue with final gather rays from a surface with precomputed light.
-    fn look_about(
+    /// Continue with several paths.
+    fn continue_in_several(
         &self,
         path: &PathState,
         here: &SurfaceInteraction,
@@ -325,10 +307,7 @@ impl<'a> Walker<'a> {
             let media = if next.is_through { through } else { path.media };
             next.pdf *= path.splits;
             next.weight /= path.splits;
-            // A specular coat stays specular, whatever is below it.
-            let is_gathered = !next.is_delta() || path.is_gathered;
-            let is_sharp_since = next.is_delta() && path.is_gathered;
-            let mut one = PathState { branch, is_gathered, is_sharp_since, splits: 1.0, ..*path };
+            let mut one = PathState { branch, splits: 1.0, ..*path };
             let chance = numbers.one(dimensions.roulette());
             if self.go_on(&mut one, here, &next, media, chance, true) {
                 waiting.push(one);
