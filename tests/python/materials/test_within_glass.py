@@ -1,4 +1,4 @@
-"""What in or on glass or water and encloses nothing scatters light by the index around it."""
+"""Open surfaces in or on glass or water scatter light by the index of refraction around them."""
 
 import numpy as np
 import pytest
@@ -92,7 +92,7 @@ def test_what_is_not_metal_in_gltf_has_an_index_of_its_own():
 
 
 def met(material, index, cosine=1.0):
-    """What rays meet on a sheet in a medium of an index of refraction."""
+    """Interactions of rays with a sheet in a medium of an index of refraction."""
     to = np.array([[np.sqrt(1 - cosine**2), 0, -cosine]])
     around = [rw.Sphere((0, 0, 0), 20.0, material=rw.Dielectric(index))] if index != 1 else []
     scene = rw.Scene([sheet(0, material, half=5.0), *around])

@@ -25,7 +25,7 @@ def square(height, size=3.0, material=BLACK):
 
 
 def total(found, *more):
-    """All that is left of light, and what came to be absorbed."""
+    """Sum of the escaped, absorbed and other power."""
     return np.sum([found.escaped, found.absorbed, *more], axis=0)
 
 

@@ -1,9 +1,10 @@
 //! The stages that take sixteen paths from surfaces of any kind to their next rays.
 
 use super::matte;
+use super::path_block::bits;
 use super::queues::{Flags, PathLanes, own};
 use super::ways::Way;
-use super::worker::{WavefrontWorker, bits};
+use super::worker::WavefrontWorker;
 use crate::dimensions::Dimensions;
 use crate::path_settings::stratum;
 use crate::resampling::{ResampledLanes, resample};

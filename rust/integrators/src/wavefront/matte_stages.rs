@@ -1,7 +1,8 @@
 //! The stages that take sixteen paths from matte surfaces to their next rays.
 
+use super::path_block::bits;
 use super::queues::{Flags, PathLanes};
-use super::worker::{WavefrontWorker, bits};
+use super::worker::WavefrontWorker;
 use super::{direct_light, matte};
 use crate::dimensions::Dimensions;
 use raywright_base::math::{LANES, Ray, SingleLanes};

@@ -2,8 +2,9 @@
 
 use super::matte;
 use super::media::MediumScattering;
+use super::path_block::bits;
 use super::queues::{Flags, PathLanes, own};
-use super::worker::{WavefrontWorker, bits};
+use super::worker::WavefrontWorker;
 use crate::dimensions::Dimensions;
 use crate::known_light::Visit;
 use crate::media::path_reuse::SecondVertex;

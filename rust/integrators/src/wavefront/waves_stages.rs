@@ -1,8 +1,9 @@
 //! The stages of paths that carry wavelengths.
 
+use super::path_block::Block;
 use super::queues::{Flags, own};
 use super::waves;
-use super::worker::{Block, WavefrontWorker};
+use super::worker::WavefrontWorker;
 use raywright_base::math::{LANES, Vec3};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;

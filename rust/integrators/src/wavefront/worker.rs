@@ -1,14 +1,15 @@
-//! The stages of a path tracer, and the loop that takes a batch of paths through them.
+//! The loop that takes a batch of paths through the stages of a path tracer.
 
 use super::branches::{self, Branches};
-use super::bsdf_block::{BsdfBlock, Scattered};
+use super::bsdf_block::BsdfBlock;
 use super::emission;
 use super::flights::Flights;
 use super::masks::Masks;
 use super::matte::Reflectances;
 use super::media::Media;
-use super::queues::{Extra, PathQueue, ShadowLanes, ShadowQueue, own};
-use super::waves::{self, PathWaves, WavesBlock};
+use super::path_block::Block;
+use super::queues::{Extra, PathQueue, ShadowQueue, own};
+use super::waves::{self, PathWaves};
 use super::ways::Way;
 use crate::known_light::KnownLight;
 use crate::media::current_medium::Filled;
@@ -18,13 +19,13 @@ use crate::path_settings::{Follow, PathSettings};
 use crate::path_sharing::PathSharing;
 use crate::{CameraSample, CameraSamples, Guide, Job, Worker, roulette};
 use raywright_accel::Primitives;
-use raywright_base::math::{DVec3, Hit, LANES, Ray, SingleLanes, Vec3, VectorLanes, gather};
+use raywright_base::math::{Hit, LANES, Ray};
 use raywright_base::sampling::{SamplerColumns, SamplerLanes};
 use raywright_base::simd::Level;
 use raywright_base::timing::{Part, count, timed};
 use raywright_base::workers::Cancel;
 use raywright_optics::Rgb;
-use raywright_scene::{Footprint, LightBlock, Plan, Scene, SurfaceBlock};
+use raywright_scene::{Footprint, LightBlock, Plan, Scene};
 use std::ops::Range;
 
 /// Paths that are taken together. 2,048 to 4,096 stay in the second cache, and fill every sixteen.
@@ -94,105 +95,6 @@ pub(super) enum End {
     Camera,
 }
 
-/// Sixteen paths at a surface.
-pub(super) struct Block<'a> {
-    pub(super) surfaces: SurfaceBlock,
-    pub(super) reflectance: SingleLanes,
-    pub(super) throughput: SingleLanes,
-    pub(super) sample: [u32; LANES],
-    pub(super) time: [f64; LANES],
-    pub(super) lights: LightBlock,
-    pub(super) bsdf: BsdfBlock<'a>,
-    pub(super) next: Scattered,
-    pub(super) media: MediaBlock,
-    pub(super) spectral: WavesBlock,
-}
-
-/// Sixteen paths in scenes with media.
-pub(super) struct MediaBlock {
-    /// Media before and behind the surface, and at the start of their shadow rays.
-    pub here: [u32; LANES],
-    pub through: [u32; LANES],
-    pub of_shadows: [u32; LANES],
-    /// The index of refraction outside of the object.
-    pub outside: [f64; LANES],
-    /// Of directions to light, the density of scattering over that of their draw.
-    pub ratio: [f32; LANES],
-}
-
-impl MediaBlock {
-    /// Of no paths.
-    const NONE: Self = Self {
-        here: [0; LANES],
-        through: [0; LANES],
-        of_shadows: [0; LANES],
-        outside: [1.0; LANES],
-        ratio: [0.0; LANES],
-    };
-}
-
-impl Block<'_> {
-    /// Gathers sixteen paths from their queue.
-    pub(super) fn gather(&mut self, queue: &PathQueue, extra: Extra) {
-        let (which, position) = (&self.surfaces.index, &self.surfaces.position);
-        if extra.time {
-            gather(&queue.rays.time, which, &mut self.time);
-        }
-        for (column, lanes) in queue.throughput.iter().zip(&mut self.throughput.0) {
-            gather(column, which, lanes);
-        }
-        gather(&queue.sample, which, &mut self.sample);
-        if extra.state {
-            gather(&queue.scale, which, &mut self.bsdf.scale);
-            gather(&queue.flags, which, &mut self.bsdf.flags);
-        }
-        if extra.aimed {
-            gather(&queue.aimed, which, &mut self.bsdf.guided.aimed);
-        }
-        if extra.width {
-            let BsdfBlock { width, spread, .. } = &mut self.bsdf;
-            gather(&queue.width, which, width);
-            gather(&queue.spread, which, spread);
-            for lane in 0..LANES {
-                let origin = queue.vertex(which[lane] as usize);
-                let distance = (position.get(lane) - origin).length() as f32;
-                width[lane] = (width[lane] + spread[lane] * distance).abs();
-            }
-        }
-    }
-
-    /// The path of a lane shares its radiance from here on. Roulette keeps the throughput that is lost.
-    pub(super) fn share(&mut self, lane: usize, samples: u32) {
-        self.bsdf.scale[lane] *= self.throughput.get(lane).max_element();
-        self.throughput.set(lane, Vec3::ONE);
-        self.sample[lane] += samples;
-    }
-
-    /// Queues shadow rays from the lanes in a mask to their light samples.
-    #[inline]
-    pub(super) fn queue_shadows(
-        &self,
-        level: Level,
-        mask: u32,
-        (origin, arriving): (&VectorLanes, &SingleLanes),
-        shadows: &mut ShadowQueue,
-    ) {
-        let misses = std::array::from_fn(|lane| [self.surfaces.primitive[lane], self.lights.primitive[lane]]);
-        let rays = ShadowLanes {
-            origin,
-            direction: &self.lights.direction,
-            t_max: &self.lights.t_max,
-            misses: &misses,
-            arriving,
-            sample: &self.sample,
-            time: &self.time,
-            ratio: &self.media.ratio,
-            media: &self.media.of_shadows,
-        };
-        shadows.push(level, mask, &rays);
-    }
-}
-
 impl<'a> WavefrontWorker<'a> {
     pub fn new(
         job: &Job<'a>,
@@ -239,19 +141,6 @@ impl<'a> WavefrontWorker<'a> {
         let kinds = if has_kinds { Plan::KINDS } else { 1 };
         let count = scene.geometry().count();
         let few = if has_kinds && count <= BATCH { count as u32 } else { 0 };
-        let zero = SingleLanes::ZERO;
-        let block = Block {
-            surfaces: SurfaceBlock::NONE,
-            reflectance: zero,
-            throughput: zero,
-            sample: [0; LANES],
-            time: [0.0; LANES],
-            lights: LightBlock::NONE,
-            bsdf: BsdfBlock::new(are_flat, guide, settings.least_pdf()),
-            next: Scattered::NONE,
-            media: MediaBlock::NONE,
-            spectral: WavesBlock::NONE,
-        };
         Self {
             scene,
             level,
@@ -287,7 +176,7 @@ impl<'a> WavefrontWorker<'a> {
             waves: Vec::new(),
             each: Vec::new(),
             each_pdf: Vec::new(),
-            block: Box::new(block),
+            block: Box::new(Block::new(BsdfBlock::new(are_flat, guide, settings.least_pdf()))),
         }
     }
 
@@ -296,58 +185,6 @@ impl<'a> WavefrontWorker<'a> {
         if self.primitives.len() < most + LANES {
             self.primitives.resize(most + LANES, 0);
             self.hits.resize(if self.extra.hits { most } else { 0 }, Hit::MISS);
-        }
-    }
-
-    /// Stage: some of the camera's rays become paths.
-    pub(super) fn start(&mut self, samples: &CameraSamples, some: Range<usize>) {
-        let (queue, count) = (&mut self.paths[0], some.len());
-        queue.make_room(count);
-        queue.rays.len = count;
-        for axis in 0..3 {
-            queue.rays.origin[axis][..count].copy_from_slice(&samples.origin[axis][some.clone()]);
-            for (to, &from) in queue.rays.direction[axis].iter_mut().zip(&samples.direction[axis][some.clone()]) {
-                *to = from as f32;
-            }
-        }
-        for (i, sample) in (0..).zip(&mut queue.sample[..count]) {
-            *sample = i;
-        }
-        queue.throughput.iter_mut().for_each(|column| column[..count].fill(1.0));
-        queue.pdf[..count].fill(f32::INFINITY);
-        if self.extra.state {
-            queue.scale[..count].fill(1.0);
-            queue.flags[..count].fill(0);
-        }
-        if self.extra.aimed {
-            queue.aimed[..count].fill(1.0);
-        }
-        if self.extra.time {
-            queue.rays.time[..count].copy_from_slice(&samples.time[some.clone()]);
-        }
-        if self.extra.width {
-            queue.width[..count].fill(self.footprint.width as f32);
-            queue.spread[..count].fill(self.footprint.spread as f32);
-        }
-        if self.camera_start != CameraStart::AtCamera {
-            let vector =
-                |columns: &[Vec<f64>; 3], i: usize| DVec3::from_array(columns.each_ref().map(|column| column[i]));
-            let ray = |i: usize| {
-                let time = samples.time[i];
-                Ray { time, ..Ray::new(vector(&samples.origin, i), vector(&samples.direction, i)) }
-            };
-            let rays: Vec<Ray> = some.clone().map(ray).collect();
-            for (i, (ray, way)) in rays.iter().zip(self.camera_start.ways(self.scene, &rays)).enumerate() {
-                let start = ray.at(way);
-                (0..3).for_each(|axis| queue.rays.origin[axis][i] = start[axis]);
-                if self.extra.width {
-                    queue.width[i] = self.footprint.at(way).width as f32;
-                }
-            }
-        }
-        queue.rays.misses[..count].fill([Ray::NO_TRIANGLE; 2]);
-        if let Some(samplers) = &samples.samplers {
-            self.samplers.get_or_insert_with(|| samplers.clone()).take_from(samplers, some);
         }
     }
 
@@ -527,7 +364,7 @@ impl<'a> WavefrontWorker<'a> {
         self.found = found;
     }
 
-    /// Takes all paths to their next vertices, and sorts them by what is there.
+    /// Takes all paths to their next vertices, and sorts them by the BSDFs there.
     pub(super) fn find_vertices(
         &mut self,
         numbers: &mut SamplerLanes,
@@ -596,17 +433,6 @@ fn kind_of(scene: &Scene, primitive: u32) -> usize {
     let kind = plan.kind_of_shape(shape);
     let is_matte = || plan.diffuse(shape).is_some() && !geometry.has_normal_at(primitive);
     if kind == Plan::DIFFUSE && !is_matte() { Plan::MIXED } else { kind }
-}
-
-/// The lanes that have all bits, of the first so many, as bits.
-#[inline]
-pub(super) fn bits(lanes: &[u32; LANES], count: usize) -> u32 {
-    const BITS: [u32; LANES] = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768];
-    let mut all = 0;
-    for i in 0..LANES {
-        all |= lanes[i] & BITS[i];
-    }
-    all & !(u32::MAX << count)
 }
 
 impl Worker for WavefrontWorker<'_> {
