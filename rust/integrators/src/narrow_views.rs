@@ -44,7 +44,15 @@ impl CameraStart {
             Self::CloseToHits => {
                 let mut hits = vec![Hit::MISS; rays.len()];
                 scene.intersect(rays, &mut hits);
-                hits.iter().map(|hit| if hit.is_hit() { hit.t * (1.0 - REST) } else { 0.0 }).collect()
+                let is_bounded = region.radius.is_finite();
+                // A ray that misses all starts behind the scene, which its rounded direction might hit.
+                let behind = |ray: &Ray| (region.centre - ray.origin).dot(ray.direction) + 2.0 * region.radius;
+                let way = |(ray, hit): (&Ray, &Hit)| match hit.is_hit() {
+                    true => hit.t * (1.0 - REST),
+                    false if is_bounded => behind(ray).max(0.0),
+                    false => 0.0,
+                };
+                rays.iter().zip(&hits).map(way).collect()
             }
         }
     }
