@@ -1,7 +1,7 @@
 //! One of several draws, to stand for their sum.
 
 use raywright_base::math::LANES;
-use raywright_base::simd::loops;
+use raywright_base::simd::{Level, loops};
 use raywright_optics::{Rgb, RgbLanes};
 
 /// Of all draws and what each brings, one, chosen with a probability that goes by what it brings, over that
@@ -59,9 +59,9 @@ pub(crate) struct ResampledLanes {
 
 loops! {
     /// Of one draw more, the same for all lanes.
-    pub(crate) fn resample(all: &mut ResampledLanes, draw: u64, brings: &RgbLanes) {
+    fn resample(before: &ResampledLanes, draw: u64, brings: &RgbLanes, all: &mut ResampledLanes) {
         for i in 0..LANES {
-            all.set(i, all.get(i).add(draw, brings.get(i)));
+            all.set(i, before.get(i).add(draw, brings.get(i)));
         }
     }
 }
@@ -71,6 +71,14 @@ impl ResampledLanes {
     pub fn new(choice: [f64; LANES]) -> Self {
         let (zero, brings) = ([0.0; LANES], RgbLanes::ZERO);
         Self { choice, sum: zero, kept: [Resampled::NONE; LANES], brings, strength: zero }
+    }
+
+    /// Adds one draw more, the same for all lanes.
+    #[inline]
+    pub fn add(&mut self, level: Level, draw: u64, brings: &RgbLanes) {
+        // Not in place, where a selection becomes a masked store, which is slow on processors of AMD.
+        let before = self.clone();
+        resample(level, &before, draw, brings, self);
     }
 
     #[inline(always)]
@@ -97,7 +105,6 @@ impl ResampledLanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use raywright_base::simd::Level;
 
     /// In the last lane, of which the others know nothing.
     fn resampled(choice: f64, draws: impl Iterator<Item = Rgb>) -> Option<(usize, Rgb)> {
@@ -105,7 +112,7 @@ mod tests {
         for (draw, brings) in draws.enumerate() {
             let mut lanes = RgbLanes::ZERO;
             lanes.set(LANES - 1, brings);
-            resample(Level::Scalar, &mut all, draw as u64, &lanes);
+            all.add(Level::Scalar, draw as u64, &lanes);
         }
         assert!((0..LANES - 1).all(|lane| all.kept(lane).is_none()));
         all.kept(LANES - 1)

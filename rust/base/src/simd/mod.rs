@@ -24,6 +24,8 @@ pub use pair::Pair;
 pub use scalar::Scalar;
 pub use transpose::columns_of_four;
 
+use std::sync::atomic::{Ordering, compiler_fence};
+
 /// Prefetch the cache line of an address, which need not be valid.
 #[inline(always)]
 pub fn ask_for(line: *const u8) {
@@ -76,6 +78,14 @@ pub trait Lanes<const N: usize>: Copy + Send + Sync {
     fn max(self, a: Self::F32, b: Self::F32) -> Self::F32;
     /// Blend: the lanes of `a` that are in `mask`, else those of `b`.
     fn select(self, mask: u32, a: Self::F32, b: Self::F32) -> Self::F32;
+    /// Store the lanes of `a` that are in `mask`; others keep their numbers.
+    #[inline(always)]
+    fn store_some(self, mask: u32, a: Self::F32, to: &mut [f32; N]) {
+        let blended = self.select(mask, a, self.load(to));
+        // Without it, load, blend and store become a masked store, which takes processors of AMD twelve cycles.
+        compiler_fence(Ordering::SeqCst);
+        self.store(blended, to);
+    }
     /// Lanes where `a ≤ b`.
     fn le(self, a: Self::F32, b: Self::F32) -> u32;
     /// Lanes where `a > b`.

@@ -7,7 +7,7 @@ use super::ways::Way;
 use super::worker::WavefrontWorker;
 use crate::dimensions::Dimensions;
 use crate::path_settings::stratum;
-use crate::resampling::{ResampledLanes, resample};
+use crate::resampling::ResampledLanes;
 use raywright_base::math::{LANES, Ray, SingleLanes, VectorLanes};
 use raywright_base::sampling::{Pairs, SamplerLanes};
 use raywright_base::timing::{Part, timed};
@@ -130,7 +130,7 @@ impl WavefrontWorker<'_> {
                 lights.draw_one_block(one, level, geometry, &receivers, &choice, &u, drawn);
                 let asks = (&asks_each, is_found, share);
                 block.bsdf.reflect(level, surfaces, drawn, &block.throughput, asks, &mut of_one);
-                resample(level, &mut all, one.into(), &of_one);
+                all.add(level, one.into(), &of_one);
                 self.each_pdf[one as usize] = block.bsdf.pdf;
             }
             for lane in 0..surfaces.count {

@@ -18,7 +18,7 @@ pub trait Real: Copy + Default + Into<f64> + Send + Sync + 'static {
 impl Real for f32 {
     #[inline(always)]
     fn spread<S: Lanes<RAYS>>(self, simd: S, mask: u32, to: &mut Column<f32>) {
-        simd.store(simd.select(mask, simd.splat(self), simd.load(to)), to);
+        simd.store_some(mask, simd.splat(self), to);
     }
 }
 

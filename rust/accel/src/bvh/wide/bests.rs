@@ -172,12 +172,10 @@ impl Bests {
         open &= !sure;
         let mut changed = sure;
         if !ANY {
-            simd.store(simd.select(sure, bracket.low, low), &mut self.low);
-            simd.store(simd.select(sure, bracket.high, high), &mut self.high);
-            let which = simd.select(sure, simd.splat(f32::from_bits(leaf.bits())), simd.load(&self.leaf));
-            simd.store(which, &mut self.leaf);
-            let which = simd.select(sure, simd.splat(f32::from_bits(lane)), simd.load(&self.lane));
-            simd.store(which, &mut self.lane);
+            simd.store_some(sure, bracket.low, &mut self.low);
+            simd.store_some(sure, bracket.high, &mut self.high);
+            simd.store_some(sure, simd.splat(f32::from_bits(leaf.bits())), &mut self.leaf);
+            simd.store_some(sure, simd.splat(f32::from_bits(lane)), &mut self.lane);
         }
         while open != 0 {
             let i = open.trailing_zeros() as usize;
