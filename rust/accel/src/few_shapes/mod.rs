@@ -25,7 +25,24 @@ pub struct FewShapes {
     spheres: Vec<Sphere>,
     /// The number of the shape of each primitive.
     shape_of: Vec<u32>,
+    /// The primitives of each shape, and of none at the end.
+    owners: Vec<Owners>,
     region: Region,
+}
+
+/// The primitives of a shape: where a quadrilateral is two, one on either side of its diagonal.
+#[derive(Clone, Copy, Debug)]
+struct Owners {
+    /// The axes that the diagonal is given in.
+    axes: [usize; 2],
+    diagonal: EdgeLine,
+    primitives: [u32; 2],
+}
+
+impl Owners {
+    const fn one(primitive: u32) -> Self {
+        Self { axes: [0, 1], diagonal: ([0.0; 2], 0.0), primitives: [primitive; 2] }
+    }
 }
 
 /// Sixteen rays, and for each the shapes that it leaves and that it ends on.
@@ -169,7 +186,10 @@ fn accept<const ANY: bool>(index: u32, i: usize, (t, error, off): (f32, f32, f32
     } else {
         best.near[i] = choose(is_hit, near, best.near[i]);
         best.far[i] = choose(is_hit, far, best.far[i]);
-        best.shape[i] = index & is_hit | best.shape[i] & !is_hit;
+        // Numbers of shapes increase, and NONE is less than all as a signed number. A selection would become a masked
+        // store, which takes as long as the rest on processors of AMD.
+        let hit = (index | !is_hit).cast_signed();
+        best.shape[i] = hit.max(best.shape[i].cast_signed()).cast_unsigned();
     }
 }
 
@@ -219,15 +239,24 @@ fn either<S: Simd<N>, const N: usize, const OUTLINE: usize, const ANY: bool>(
     }
 }
 
+/// Sixteen entries of a column.
+#[inline(always)]
+fn sixteen<T>(column: &[T], start: usize) -> &[T; LANES] {
+    column[start..].first_chunk().expect("room for sixteen")
+}
+
 loops! {
     /// Load sixteen rays.
     fn take(from: &PathRays, start: usize, extent: f32, shape_of: &[u32], rays: &mut Rays, best: &mut Best) {
-        let end = start + LANES;
         for axis in 0..3 {
-            for (to, &from) in rays.origin[axis].iter_mut().zip(&from.origin[axis][start..end]) {
-                *to = from as f32;
+            let (origin, direction) = (sixteen(&from.origin[axis], start), sixteen(&from.direction[axis], start));
+            for i in 0..LANES {
+                rays.origin[axis][i] = origin[i] as f32;
+                rays.direction[axis][i] = direction[i];
+                let steep = steepness(direction[i]);
+                rays.steeper[axis][i] = 1.0 + steep;
+                rays.inverse[axis][i] = steep.copysign(direction[i]);
             }
-            rays.direction[axis].copy_from_slice(&from.direction[axis][start..end]);
         }
         for i in 0..LANES {
             let (x, y, z) = (rays.origin[0][i].abs(), rays.origin[1][i].abs(), rays.origin[2][i].abs());
@@ -236,27 +265,19 @@ loops! {
             // No hit lies as far.
             best.far[i] = 2.0 * (extent + size);
         }
-        for (inverse, (steeper, direction)) in rays.inverse.iter_mut().zip(rays.steeper.iter_mut().zip(&rays.direction))
-        {
-            for i in 0..LANES {
-                let steep = steepness(direction[i]);
-                steeper[i] = 1.0 + steep;
-                inverse[i] = steep.copysign(direction[i]);
-            }
-        }
-        if let Some(from) = from.t_max.get(start..end) {
-            for (to, &from) in best.far.iter_mut().zip(from) {
-                *to = lesser(from as f32, *to);
-            }
-        }
         let shape = |primitive: u32| shape_of.get(primitive as usize).copied().unwrap_or(NONE);
-        for (to, &[left, _]) in rays.misses[0].iter_mut().zip(&from.misses[start..end]) {
-            *to = shape(left);
+        let misses = sixteen(&from.misses, start);
+        for i in 0..LANES {
+            rays.misses[0][i] = shape(misses[i][0]);
         }
         // Only rays with a finite end have a target.
         if !from.t_max.is_empty() {
-            for (to, &[_, reached]) in rays.misses[1].iter_mut().zip(&from.misses[start..end]) {
-                *to = shape(reached);
+            let t_max = sixteen(&from.t_max, start);
+            for i in 0..LANES {
+                best.far[i] = lesser(t_max[i] as f32, best.far[i]);
+            }
+            for i in 0..LANES {
+                rays.misses[1][i] = shape(misses[i][1]);
             }
         }
         for i in 0..LANES {
@@ -317,24 +338,25 @@ impl FewShapes {
             shape_of[primitive as usize] = (patches.len() + spheres.len()) as u32;
             spheres.push(Sphere::new(primitive, center, radius));
         }
-        Some(Self { patches, spheres, shape_of, region })
+        let of_patch = |patch: &Patch| {
+            let Patch { axes: [x, y, _], diagonal, primitives, .. } = *patch;
+            Owners { axes: [x, y], diagonal, primitives }
+        };
+        let of_spheres = spheres.iter().map(|sphere| Owners::one(sphere.primitive));
+        let owners = patches.iter().map(of_patch).chain(of_spheres).chain([Owners::one(NONE)]).collect();
+        Some(Self { patches, spheres, shape_of, owners, region })
     }
 
     /// Find the first primitive that each ray hits, or [`Ray::NO_TRIANGLE`].
     pub fn closest(&self, level: Level, rays: &PathRays, primitives: &mut [u32]) {
+        let none = self.owners.len() - 1;
         self.ask::<false>(level, rays, |start, rays, best| {
             for (i, to) in primitives[start..][..LANES].iter_mut().enumerate() {
-                let shape = best.shape[i] as usize;
-                *to = match self.patches.get(shape) {
-                    Some(patch) => {
-                        // On the diagonal, one triangle is as good as the other.
-                        let t = 0.5 * (best.near[i] + best.far[i]);
-                        let p = |axis: usize| t * rays.direction[axis][i] + rays.origin[axis][i];
-                        let is_second = beyond::<false>(patch.diagonal, [p(patch.axes[0]), p(patch.axes[1])]) > 0.0;
-                        patch.primitives[usize::from(is_second)]
-                    }
-                    None => self.spheres.get(shape.wrapping_sub(self.patches.len())).map_or(NONE, |s| s.primitive),
-                };
+                let Owners { axes: [x, y], diagonal, primitives } = &self.owners[none.min(best.shape[i] as usize)];
+                // On the diagonal, one triangle is as good as the other.
+                let t = 0.5 * (best.near[i] + best.far[i]);
+                let p = |axis: usize| t * rays.direction[axis][i] + rays.origin[axis][i];
+                *to = primitives[usize::from(beyond::<false>(*diagonal, [p(*x), p(*y)]) > 0.0)];
             }
         });
     }
