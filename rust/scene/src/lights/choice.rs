@@ -1,7 +1,7 @@
 //! Light selection among the lights within a scene.
 
 use super::{LightBounds, LightSampleContext, LightTree, Sides};
-use raywright_base::math::DVec3;
+use raywright_base::math::{DVec3, LANES, SingleLanes, VectorLanes};
 use raywright_base::sampling::AliasTable;
 use std::f64::consts::PI;
 
@@ -92,6 +92,27 @@ impl Choice {
             }
             Self::Tree(tree) => tree.sample(receiver, u),
         }
+    }
+
+    /// The same for sixteen receivers, whose normals are 0 if light reaches them from all directions.
+    pub fn sample_lanes(
+        &self,
+        position: &VectorLanes,
+        normal: &SingleLanes,
+        u: &[f64; LANES],
+    ) -> [Option<(usize, f64)>; LANES] {
+        let together = match self {
+            Self::Power(_) => None,
+            Self::Tree(tree) => tree.sample_lanes(position, normal, u),
+        };
+        together.unwrap_or_else(|| {
+            let receiver = |lane: usize| LightSampleContext {
+                position: position.get(lane),
+                normal: normal.get(lane).as_dvec3(),
+                waves: None,
+            };
+            std::array::from_fn(|lane| self.sample(&receiver(lane), u[lane]))
+        })
     }
 
     /// Probability of selecting a light.

@@ -4,8 +4,8 @@ use super::Lights;
 use super::choice::Choice;
 use super::plain::{Figure, PlainLight};
 use crate::Geometry;
-use raywright_base::math::single::{choose, choose_vector, mask};
-use raywright_base::math::{DVec3, LANES, SingleLanes, Vec3, VectorLanes, select};
+use raywright_base::math::single::{choose, mask};
+use raywright_base::math::{DVec3, LANES, SingleLanes, Vec3, VectorLanes};
 use raywright_base::simd::loops;
 
 /// A triangle or a sphere that shines alike everywhere.
@@ -75,37 +75,92 @@ impl LampLanes {
     }
 }
 
-/// So few triangles are spread over lanes one by one, which takes less time than to look one up for each lane.
-pub(super) const FEW_LAMPS: usize = 4;
+/// All lamps of a scene, which are one or two triangles, in SoA layout; one stands twice.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FewTriangles {
+    /// The first is chosen by numbers less than this.
+    share: f64,
+    place: [[f64; 2]; 3],
+    edges: [[[f32; 2]; 3]; 2],
+    radiance: [[f32; 2]; 3],
+    sides: [[u32; 2]; 2],
+    rarity: [f32; 2],
+    primitive: [u32; 2],
+}
+
+impl FewTriangles {
+    /// `None` if there are more, or others.
+    fn new(lamps: &[Option<Lamp>]) -> Option<Self> {
+        let edges = |lamp: &Lamp| match lamp.form {
+            Form::Triangle(edges) => Some(edges),
+            Form::Sphere(_) => None,
+        };
+        let all: Vec<&Lamp> = lamps.iter().map(Option::as_ref).collect::<Option<_>>()?;
+        let chosen: Vec<_> = all.into_iter().filter(|lamp| lamp.rarity < f32::INFINITY).collect();
+        let (both, share) = match chosen[..] {
+            [one] => ([one; 2], 1.0),
+            [first, second] => ([first, second], second.before),
+            _ => return None,
+        };
+        let [Some(first), Some(second)] = both.map(edges) else { return None };
+        Some(Self {
+            share,
+            place: [0, 1, 2].map(|axis| both.map(|lamp| lamp.place[axis])),
+            edges: [0, 1].map(|edge| [0, 1, 2].map(|axis| [first[edge][axis], second[edge][axis]])),
+            radiance: [0, 1, 2].map(|channel| both.map(|lamp| lamp.radiance[channel])),
+            sides: [0, 1].map(|side| both.map(|lamp| lamp.sides[side])),
+            rarity: both.map(|lamp| lamp.rarity),
+            primitive: both.map(|lamp| lamp.primitive),
+        })
+    }
+}
 
 loops! {
-    /// Puts a triangle into the lanes whose choice is it or one that follows, over those before.
-    pub(super) fn spread(
-        lamp: &Lamp,
-        edges: &[Vec3; 2],
+    /// Puts into each lane the triangle of a choice. There is a loop for each column: one for all is not vectorized.
+    pub(super) fn choose_triangles(
+        few: &FewTriangles,
         choice: &[f64; LANES],
         lamps: &mut LampLanes,
         primitive: &mut [u32; LANES],
     ) {
-        let mut is_here = [0; LANES];
+        let mut is_first = [0; LANES];
         for i in 0..LANES {
-            lamps.place.set(i, select(choice[i] >= lamp.before, lamp.place, lamps.place.get(i)));
-            is_here[i] = mask(choice[i] >= lamp.before);
+            is_first[i] = mask(choice[i] < few.share);
+        }
+        for axis in 0..3 {
+            let ([first, second], to) = (few.place[axis], lamps.place.axis_mut(axis));
+            for i in 0..LANES {
+                to[i] = if choice[i] < few.share { first } else { second };
+            }
+            choose_each(&few.radiance[axis], &is_first, &mut lamps.radiance.0[axis]);
+            for edge in 0..2 {
+                choose_each(&few.edges[edge][axis], &is_first, &mut lamps.edges[edge].0[axis]);
+            }
         }
         for i in 0..LANES {
-            let here = is_here[i];
-            lamps.edges[0].set(i, choose_vector(here, edges[0], lamps.edges[0].get(i)));
-            lamps.edges[1].set(i, choose_vector(here, edges[1], lamps.edges[1].get(i)));
-            lamps.radiance.set(i, choose_vector(here, lamp.radiance, lamps.radiance.get(i)));
-            lamps.sides[0][i] = lamp.sides[0] & here | lamps.sides[0][i] & !here;
-            lamps.sides[1][i] = lamp.sides[1] & here | lamps.sides[1][i] & !here;
-            lamps.rarity[i] = choose(here, lamp.rarity, lamps.rarity[i]);
-            primitive[i] = lamp.primitive & here | primitive[i] & !here;
+            let of = |[first, second]: [u32; 2]| first & is_first[i] | second & !is_first[i];
+            (lamps.sides[0][i], lamps.sides[1][i]) = (of(few.sides[0]), of(few.sides[1]));
+            primitive[i] = of(few.primitive);
         }
+        choose_each(&few.rarity, &is_first, &mut lamps.rarity);
+    }
+}
+
+#[inline(always)]
+fn choose_each([first, second]: &[f32; 2], is_first: &[u32; LANES], to: &mut [f32; LANES]) {
+    for i in 0..LANES {
+        to[i] = choose(is_first[i], *first, *second);
     }
 }
 
 impl Lights {
+    /// All lights within the scene, if they are one or two triangles. More are not chosen by their power.
+    pub(super) fn few_triangles(&self) -> Option<FewTriangles> {
+        let are_surfaces = self.copied.len() + self.inside.len() == 0;
+        let by_power = matches!(self.choice, Some(Choice::Power(_)));
+        (are_surfaces && by_power).then(|| FewTriangles::new(&self.lamps))?
+    }
+
     /// Of all surfaces that shine, those that do so alike everywhere, by number; none if there are too many to keep.
     pub(super) fn lamps(&self, geometry: &Geometry) -> Vec<Option<Lamp>> {
         if self.surfaces.len() > self.kept.len() {

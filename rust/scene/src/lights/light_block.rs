@@ -1,7 +1,7 @@
 //! Light drawn for sixteen points of surfaces at a time, in f32.
 
 use super::choice::Choice;
-use super::lamp::{FEW_LAMPS, Form, LampLanes, spread};
+use super::lamp::{Form, LampLanes, choose_triangles};
 use super::sphere_block::draw_spheres;
 use super::triangle_block::draw_triangles;
 use super::{LightSample, LightSampleContext, Lights};
@@ -77,6 +77,15 @@ impl ReceiverBlock<'_> {
         let place = if normal == Vec3::ZERO { &self.surfaces.position } else { &self.surfaces.origin };
         LightSampleContext { position: place.get(lane), normal: normal.as_dvec3(), waves }
     }
+
+    /// Where light is asked for.
+    fn positions(&self) -> VectorLanes {
+        let mut positions = self.surfaces.origin;
+        for lane in (0..LANES).filter(|&lane| self.normal.get(lane) == Vec3::ZERO) {
+            positions.set(lane, self.surfaces.position.get(lane));
+        }
+        positions
+    }
 }
 
 impl LightBlock {
@@ -123,9 +132,7 @@ impl Lights {
         let are_even = || self.lamps.iter().flatten().all(|lamp| is_even(lamp.rarity));
         match &self.choice {
             None => self.infinite.lights().len() <= 1,
-            Some(Choice::Power(_)) => {
-                self.infinite.is_dark() && self.are_triangles && self.lamps.len() <= FEW_LAMPS && are_even()
-            }
+            Some(Choice::Power(_)) => self.infinite.is_dark() && self.few_triangles.is_some() && are_even(),
             Some(Choice::Tree(_)) => false,
         }
     }
@@ -155,16 +162,13 @@ impl Lights {
     ) {
         let ReceiverBlock { surfaces, normal, .. } = *receivers;
         if let (true, Some(choices)) = (self.infinite.is_dark(), &self.choice) {
-            if matches!(choices, Choice::Power(_)) && self.are_triangles && self.lamps.len() <= FEW_LAMPS {
+            if let Some(few) = &self.few_triangles {
                 let mut lamps = LampLanes::NONE;
-                for lamp in self.lamps.iter().flatten().filter(|lamp| lamp.rarity < f32::INFINITY) {
-                    let Form::Triangle(edges) = &lamp.form else { continue };
-                    spread(level, lamp, edges, choice, &mut lamps, &mut lights.primitive);
-                }
+                choose_triangles(level, few, choice, &mut lamps, &mut lights.primitive);
                 draw_lamps(level, surfaces, &lamps, u, lights);
                 return self.shine(geometry, receivers, !0, lights);
             }
-            let chosen = std::array::from_fn(|lane| choices.sample(&receivers.get(lane), choice[lane]));
+            let chosen = choices.sample_lanes(&receivers.positions(), normal, choice);
             return self.draw_chosen(level, geometry, receivers, &chosen, u, lights);
         }
         let sky = self.constant_sky();

@@ -1,8 +1,8 @@
 //! A light tree: selection among thousands of lights by estimated contribution.
 
-use super::wide_bounds::{Importances, WIDTH, WideBounds};
+use super::wide_bounds::{ChosenLanes, Importances, WIDTH, WideBounds, choose_children};
 use super::{LightBounds, LightSampleContext};
-use raywright_base::math::DVec3;
+use raywright_base::math::{DVec3, LANES, SingleLanes, VectorLanes};
 use raywright_base::simd::Level;
 
 /// A tree over lights (Conty Estevez and Kulla, 2018; with densities as in Pharr, Jakob and Humphreys, "Physically
@@ -132,6 +132,22 @@ impl LightTree {
             }
             here = link as usize;
         }
+    }
+
+    /// [`LightTree::sample`] for sixteen receivers, whose normals are 0 if light reaches them from all directions, in
+    /// trees of one node; `None` of others.
+    pub(super) fn sample_lanes(
+        &self,
+        position: &VectorLanes,
+        normal: &SingleLanes,
+        u: &[f64; LANES],
+    ) -> Option<[Option<(usize, f64)>; LANES]> {
+        let [Node { bounds, links, .. }] = self.nodes.as_slice() else { return None };
+        let count = links.iter().filter(|link| **link != NOWHERE).count();
+        let mut chosen = ChosenLanes { lane: [0; LANES], share: [0.0; LANES] };
+        choose_children(self.level, bounds, count, self.scale, position, normal, u, &mut chosen);
+        let light = |i: usize| (links[chosen.lane[i] as usize % WIDTH] & !LEAF) as usize;
+        Some(std::array::from_fn(|i| (chosen.share[i] > 0.0).then(|| (light(i), chosen.share[i]))))
     }
 
     /// Probability of selecting a light for a receiver.

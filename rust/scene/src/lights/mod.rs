@@ -63,7 +63,7 @@ use choice::{Choice, Strength};
 use few_lights::Few;
 use infinite::InfiniteLights;
 use instanced::Copied;
-use lamp::{Form, Lamp};
+use lamp::{FewTriangles, Lamp};
 use luminous::{Luminous, is_open};
 use plain::PlainLight;
 use raywright_accel::Primitives;
@@ -97,9 +97,9 @@ pub struct Lights {
     /// Precomputed data of each emissive primitive, if it is a triangle or sphere of uniform emission; empty if there
     /// are more than [`Lights::KEPT`].
     kept: Vec<Option<PlainLight>>,
-    /// The same prepared for f32, and whether all lights within the scene are triangles of uniform emission.
+    /// The same prepared for f32, and once more if they are few.
     lamps: Vec<Option<Lamp>>,
-    are_triangles: bool,
+    few_triangles: Option<FewTriangles>,
 }
 
 impl Lights {
@@ -155,8 +155,6 @@ impl Lights {
         let plain = |&primitive: &u32| PlainLight::new(geometry, &luminous(geometry.locate(primitive).0), primitive);
         let kept = few_surfaces.iter().map(plain).collect();
         let shines = emission.iter().map(|emission| !emission.is_dark()).collect();
-        let lamps = Vec::new();
-        let are_triangles = false;
         let mut all = Self {
             emission,
             shines,
@@ -169,13 +167,11 @@ impl Lights {
             infinite,
             few,
             kept,
-            lamps,
-            are_triangles,
+            lamps: Vec::new(),
+            few_triangles: None,
         };
         all.lamps = all.lamps(geometry);
-        let is_triangle = |lamp: &Option<Lamp>| lamp.is_some_and(|lamp| matches!(lamp.form, Form::Triangle(_)));
-        let are_surfaces = all.copied.len() + all.inside.len() == 0;
-        all.are_triangles = are_surfaces && !all.lamps.is_empty() && all.lamps.iter().all(is_triangle);
+        all.few_triangles = all.few_triangles();
         all
     }
 

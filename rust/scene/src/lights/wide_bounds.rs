@@ -5,6 +5,7 @@
 
 use super::{LightBounds, LightSampleContext};
 use raywright_base::math::single::{choose, greater, lesser, mask};
+use raywright_base::math::{LANES, SingleLanes, VectorLanes};
 use raywright_base::simd::{Level, loops};
 
 /// Children of a node.
@@ -98,41 +99,109 @@ impl WideBounds {
     }
 }
 
-loops! {
-    /// All light is placed at the centers. The angles to the lights' normals and to the receiver's horizon are the most
-    /// favorable within the bounds. Sines and cosines are multiplied by the distance, which avoids divisions and keeps
-    /// the square roots independent.
-    fn importances(of: &WideBounds, receiver: &Receiver, found: &mut [f32; WIDTH]) {
+impl WideBounds {
+    /// Estimate of the contribution of a child. All light is placed at the centers. The angles to the lights' normals
+    /// and to the receiver's horizon are the most favorable within the bounds. Sines and cosines are multiplied by the
+    /// distance, which avoids divisions and keeps the square roots independent.
+    #[inline(always)]
+    fn importance(&self, i: usize, receiver: &Receiver) -> f32 {
         let Receiver { position, normal, is_free, scale } = receiver;
+        let x = ((position[0] - self.centre[0][i]) * scale) as f32;
+        let y = ((position[1] - self.centre[1][i]) * scale) as f32;
+        let z = ((position[2] - self.centre[2][i]) * scale) as f32;
+        let square = x * x + y * y + z * z;
+        let inverse = 1.0 / square;
+        let (sin_ball, cos_ball) = (self.radius[i], greater(square - self.square[i], 0.0).sqrt());
+        // The angle to the nearest normal, reduced by the angle of the bounding sphere.
+        let cos = self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z;
+        let sin = greater(square - cos * cos, 0.0).sqrt();
+        let (cos_cone, sin_cone) = (self.cos_cone[i], self.sin_cone[i]);
+        let (sin_off, cos_off) = (sin * cos_cone - cos * sin_cone, cos * cos_cone + sin * sin_cone);
+        let nearest = (cos_off * cos_ball + sin_off * sin_ball) * inverse;
+        let nearest = choose(mask(cos_off >= cos_ball), 1.0, nearest);
+        let nearest = choose(mask(cos >= cos_cone * square.sqrt()), 1.0, nearest);
+        let is_missed = mask(nearest < self.cos_reach[i]) & self.has_cone[i];
+        let emitted = self.intensity[i] * inverse * choose(self.has_cone[i], nearest, 1.0);
+        // The same at the receiver.
+        let cos = -(normal[0] * x + normal[1] * y + normal[2] * z);
+        let sin = greater(square - cos * cos, 0.0).sqrt();
+        let above = (cos * cos_ball + sin * sin_ball) * inverse;
+        let above = choose(mask(cos >= cos_ball) | *is_free, 1.0, above) + ROUNDING;
+        let is_missed = is_missed | mask(above < 0.0);
+        // Within the sphere around the box every direction is possible.
+        let is_within = mask(square <= self.square[i]);
+        let importance = choose(is_within, self.intensity[i] / self.square[i], emitted * above);
+        // NaN at the center of a light without extent, where the first is the least.
+        let importance = choose(mask(importance > self.least[i]), importance, self.least[i]);
+        choose(is_missed & !is_within, 0.0, lesser(importance, RANGE[1]))
+    }
+}
+
+loops! {
+    fn importances(of: &WideBounds, receiver: &Receiver, found: &mut [f32; WIDTH]) {
         for i in 0..WIDTH {
-            let x = ((position[0] - of.centre[0][i]) * scale) as f32;
-            let y = ((position[1] - of.centre[1][i]) * scale) as f32;
-            let z = ((position[2] - of.centre[2][i]) * scale) as f32;
-            let square = x * x + y * y + z * z;
-            let inverse = 1.0 / square;
-            let (sin_ball, cos_ball) = (of.radius[i], greater(square - of.square[i], 0.0).sqrt());
-            // The angle to the nearest normal, reduced by the angle of the bounding sphere.
-            let cos = of.axis[0][i] * x + of.axis[1][i] * y + of.axis[2][i] * z;
-            let sin = greater(square - cos * cos, 0.0).sqrt();
-            let (cos_cone, sin_cone) = (of.cos_cone[i], of.sin_cone[i]);
-            let (sin_off, cos_off) = (sin * cos_cone - cos * sin_cone, cos * cos_cone + sin * sin_cone);
-            let nearest = (cos_off * cos_ball + sin_off * sin_ball) * inverse;
-            let nearest = choose(mask(cos_off >= cos_ball), 1.0, nearest);
-            let nearest = choose(mask(cos >= cos_cone * square.sqrt()), 1.0, nearest);
-            let is_missed = mask(nearest < of.cos_reach[i]) & of.has_cone[i];
-            let emitted = of.intensity[i] * inverse * choose(of.has_cone[i], nearest, 1.0);
-            // The same at the receiver.
-            let cos = -(normal[0] * x + normal[1] * y + normal[2] * z);
-            let sin = greater(square - cos * cos, 0.0).sqrt();
-            let above = (cos * cos_ball + sin * sin_ball) * inverse;
-            let above = choose(mask(cos >= cos_ball) | *is_free, 1.0, above) + ROUNDING;
-            let is_missed = is_missed | mask(above < 0.0);
-            // Within the sphere around the box every direction is possible.
-            let is_within = mask(square <= of.square[i]);
-            let importance = choose(is_within, of.intensity[i] / of.square[i], emitted * above);
-            // NaN at the center of a light without extent, where the first is the least.
-            let importance = choose(mask(importance > of.least[i]), importance, of.least[i]);
-            found[i] = choose(is_missed & !is_within, 0.0, lesser(importance, RANGE[1]));
+            found[i] = of.importance(i, receiver);
+        }
+    }
+}
+
+/// Children that were chosen for sixteen receivers.
+pub(super) struct ChosenLanes {
+    /// Undefined where no child contributes.
+    pub lane: [u32; LANES],
+    /// The probability of each; 0 where no child contributes.
+    pub share: [f64; LANES],
+}
+
+loops! {
+    /// [`Importances::choose`] for sixteen receivers of normals that are 0 if light reaches them from all directions.
+    pub(super) fn choose_children(
+        of: &WideBounds,
+        count: usize,
+        scale: f64,
+        position: &VectorLanes,
+        normal: &SingleLanes,
+        u: &[f64; LANES],
+        chosen: &mut ChosenLanes,
+    ) {
+        let mut found = [[0.0; LANES]; WIDTH];
+        let mut sum = [0.0; LANES];
+        for child in 0..count.min(WIDTH) {
+            for i in 0..LANES {
+                let normal = normal.get(i);
+                let receiver = Receiver {
+                    position: position.get(i).to_array(),
+                    normal: normal.to_array(),
+                    is_free: mask(normal.x == 0.0) & mask(normal.y == 0.0) & mask(normal.z == 0.0),
+                    scale,
+                };
+                found[child][i] = of.importance(child, &receiver);
+            }
+            for i in 0..LANES {
+                sum[i] += f64::from(found[child][i]);
+            }
+        }
+        let (mut rest, mut kept, mut number) = ([0.0; LANES], [0.0; LANES], [0; LANES]);
+        for i in 0..LANES {
+            rest[i] = u[i] * sum[i];
+        }
+        // Among those that contribute, the first with less before it, or the last.
+        let mut is_open = [u32::MAX; LANES];
+        for child in 0..count.min(WIDTH) {
+            let importances = found[child];
+            for i in 0..LANES {
+                let here = is_open[i] & mask(importances[i] > 0.0);
+                number[i] = child as u32 & here | number[i] & !here;
+                kept[i] = choose(here, importances[i], kept[i]);
+                is_open[i] &= !(here & mask(rest[i] < f64::from(importances[i])));
+            }
+            for i in 0..LANES {
+                rest[i] -= f64::from(choose(is_open[i], importances[i], 0.0));
+            }
+        }
+        for i in 0..LANES {
+            chosen.lane[i] = number[i];
+            chosen.share[i] = if sum[i] > 0.0 { f64::from(kept[i]) / sum[i] } else { 0.0 };
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::super::choice::{Choice, Strength};
 use super::super::{Light, LightBounds, LightSampleContext, LightTree, PointLight, Reach, Sides, SpotLight};
 use super::white;
-use raywright_base::math::DVec3;
+use raywright_base::math::{DVec3, LANES, SingleLanes, VectorLanes};
 use raywright_base::sampling::Sampler;
 use raywright_base::sampling::chi_square::assert_frequencies;
 use raywright_base::sampling::warp::{uniform_sphere, uniform_triangle};
@@ -84,6 +84,31 @@ fn probabilities_are_those_of_draws_and_add_up_to_one() {
                     assert_frequencies(&counts, &expected);
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn sixteen_receivers_choose_as_each_alone() {
+    let receivers = receivers();
+    let (mut position, mut normal) = (VectorLanes::ZERO, SingleLanes::ZERO);
+    for lane in 0..LANES {
+        position.set(lane, receivers[lane].position);
+        normal.set(lane, receivers[lane].normal.as_vec3());
+    }
+    for count in [1, 2, 3, 8, 40] {
+        let lights = strengths(count);
+        for choice in [Choice::by_tree(&lights), Choice::by_power(&lights)].map(Option::unwrap) {
+            let mut some = 0;
+            for number in 0..200 {
+                let u = std::array::from_fn(|lane| Sampler::new(16, lane as u32, number).one(0));
+                for (lane, together) in choice.sample_lanes(&position, &normal, &u).into_iter().enumerate() {
+                    let receiver = LightSampleContext { normal: normal.get(lane).as_dvec3(), ..receivers[lane] };
+                    assert_eq!(together, choice.sample(&receiver, u[lane]), "{count} lights, lane {lane}");
+                    some += usize::from(together.is_some());
+                }
+            }
+            assert!(some > 200, "{count} lights: {some} were chosen");
         }
     }
 }
