@@ -41,6 +41,15 @@ struct Corners {
     normal: VectorLanes,
 }
 
+impl Corners {
+    #[inline(always)]
+    fn set(&mut self, lane: usize, [a, b, c]: [DVec3; 3]) {
+        self.corners[0].set(lane, a);
+        self.corners[1].set(lane, b);
+        self.corners[2].set(lane, c);
+    }
+}
+
 impl SurfaceBlock {
     /// Of no rays.
     pub const NONE: Self = Self {
@@ -175,22 +184,21 @@ impl Geometry {
         };
         for lane in (0..LANES).filter(|lane| others >> lane & 1 == 0) {
             let primitive = surfaces.primitive[lane];
-            let corners: [DVec3; 3] = match (self.facets.get(primitive), &self.vertices) {
+            match (self.facets.get(primitive), &self.vertices) {
                 (Some(facet), _) => {
                     triangles.normal.set(lane, facet.normal);
                     surfaces.shape[lane] = facet.shape;
-                    if is_single { facet.corners.map(Vec3::as_dvec3) } else { self.few_corners[primitive as usize] }
+                    if is_single {
+                        triangles.set(lane, facet.corners.map(Vec3::as_dvec3));
+                    } else {
+                        triangles.set(lane, self.few_corners[primitive as usize]);
+                    }
                 }
                 // Without a call.
                 (None, Vertices::Single(vertices)) if self.gaps.is_empty() => {
-                    let [a, b, c] = self.faces[primitive as usize];
-                    let at = |i: u32| vertices[i as usize].as_dvec3();
-                    [at(a), at(b), at(c)]
+                    triangles.set(lane, self.faces[primitive as usize].map(|i| vertices[i as usize].as_dvec3()));
                 }
-                _ => self.corners(primitive),
-            };
-            for (to, corner) in triangles.corners.iter_mut().zip(corners) {
-                to.set(lane, corner);
+                _ => triangles.set(lane, self.corners(primitive)),
             }
         }
         for lane in (0..LANES).filter(|lane| !has_facets || others >> lane & 1 == 1) {
