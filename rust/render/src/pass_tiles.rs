@@ -13,8 +13,8 @@ use raywright_integrators::{CameraSample, CameraSamples, Integrator, Session, Wo
 use raywright_optics::Rgb;
 use raywright_scene::{Camera, Scene};
 use std::ops::Range;
+use std::slice;
 use std::sync::{Mutex, PoisonError};
-use std::{iter, slice};
 
 /// Maximum number of paths in flight: enough to fill the accelerator's kernels, few enough to stay in cache.
 const BATCH: usize = 4096;
@@ -373,22 +373,24 @@ impl Bench<'_> {
             let (mut radiance, mut wanted) = (self.radiance.iter(), self.weights.iter().zip(&self.wanted));
             for runs in self.runs.chunk_by(|a, b| a.tile == b.tile) {
                 let mut tile = held(&tiles[runs[0].tile]);
-                let each = runs.iter().flat_map(|run| iter::repeat_n(run, run.count as usize));
-                for (run, (&weight, wanted)) in each.zip(wanted.by_ref()) {
-                    let seen = if weight == 0.0 { None } else { radiance.next() };
-                    let seen = seen.copied().unwrap_or(Rgb::ZERO);
-                    match light {
-                        // A wavelength's color is negative in some channels.
-                        None if self.signed => tile.add_with(run.cell, Rgb::ZERO, weight, seen * weight),
-                        None => tile.add(run.cell, seen, weight),
-                        Some(light) if self.signed => {
-                            let brought = seen * weight + light.to(wanted.position, wanted.number);
-                            tile.add_with(run.cell, Rgb::ZERO, weight, brought);
+                for &Run { cell, count, .. } in runs {
+                    tile.add_run(cell, count, |tile| {
+                        let Some((&weight, wanted)) = wanted.next() else { return Rgb::ZERO };
+                        let seen = if weight == 0.0 { None } else { radiance.next() };
+                        let seen = seen.copied().unwrap_or(Rgb::ZERO);
+                        match light {
+                            // A wavelength's color is negative in some channels.
+                            None if self.signed => tile.weighted_with(cell, Rgb::ZERO, weight, seen * weight),
+                            None => tile.weighted(cell, seen, weight),
+                            Some(light) if self.signed => {
+                                let brought = seen * weight + light.to(wanted.position, wanted.number);
+                                tile.weighted_with(cell, Rgb::ZERO, weight, brought)
+                            }
+                            Some(light) => {
+                                tile.weighted_with(cell, seen, weight, light.to(wanted.position, wanted.number))
+                            }
                         }
-                        Some(light) => {
-                            tile.add_with(run.cell, seen, weight, light.to(wanted.position, wanted.number));
-                        }
-                    }
+                    });
                 }
             }
         });

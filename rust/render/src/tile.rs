@@ -172,56 +172,71 @@ impl FilmTile {
     /// Adds the next sample of a cell: radiance times the filter's weight.
     #[inline]
     pub fn add(&mut self, cell: usize, radiance: Rgb, weight: f64) {
-        let sample = self.allowed(cell, radiance) * weight;
-        self.add_sample(cell, sample);
+        self.add_run(cell, 1, |tile| tile.weighted(cell, radiance, weight));
     }
 
-    /// Adds a sample with the contribution of light paths, which includes the filter and may be negative where the
-    /// filter is.
+    /// A sample of a cell.
     #[inline]
-    pub fn add_with(&mut self, cell: usize, radiance: Rgb, weight: f64, brought: Rgb) {
+    pub fn weighted(&mut self, cell: usize, radiance: Rgb, weight: f64) -> Rgb {
+        self.allowed(cell, radiance) * weight
+    }
+
+    /// A sample with the contribution of light paths, which includes the filter and may be negative where the filter
+    /// is.
+    #[inline]
+    pub fn weighted_with(&mut self, cell: usize, radiance: Rgb, weight: f64, brought: Rgb) -> Rgb {
         let brought = self.allowed(cell, brought.abs()).copysign(brought);
-        let sample = self.allowed(cell, radiance) * weight + brought;
-        self.add_sample(cell, sample);
+        self.allowed(cell, radiance) * weight + brought
     }
 
+    /// Adds the next samples of a cell, each as a function gives it. Sums stay in registers over all of them.
     #[inline]
-    fn add_sample(&mut self, cell: usize, sample: Rgb) {
-        let number = self.counts[cell];
-        self.counts[cell] += 1;
-        let partial = &mut self.partial[cell];
-        partial.sum += sample;
-        if self.halves && number < self.evidence_until[cell] {
-            let (sum, squares) = &mut self.evidence[cell];
-            *sum += sample;
-            *squares += sample * sample;
-        }
-        let batch = if self.batch == 1 {
-            Some(sample)
-        } else {
-            self.singles[cell][1] += sample * sample;
-            let unfinished = &mut self.unfinished[cell];
-            *unfinished += sample;
-            (number + 1).is_multiple_of(self.batch).then(|| std::mem::take(unfinished))
-        };
-        if let Some(batch) = batch {
-            partial.squares += batch * batch;
-        }
-        keep_largest(&mut self.largest[cell], sample);
-        if self.quarters.are_kept() {
-            self.quarters.add(cell, sample, number / self.batch, self.halves);
-        }
-        if (number + 1).is_multiple_of(Self::BLOCK.max(self.batch)) {
-            self.total[cell].add(partial);
-            *partial = Moments::default();
-            for pairs in [&mut self.taken, &mut self.singles] {
-                if let Some([whole, now]) = pairs.get_mut(cell) {
+    pub fn add_run(&mut self, cell: usize, count: u32, mut next: impl FnMut(&mut Self) -> Rgb) {
+        let (batch, block, halves) = (self.batch, Self::BLOCK.max(self.batch), self.halves);
+        let first = self.counts[cell];
+        let (mut of_batch, mut of_block) = (first % batch, first % block);
+        let (mut partial, mut largest) = (self.partial[cell], self.largest[cell]);
+        let mut unfinished = self.unfinished.get(cell).copied().unwrap_or(Rgb::ZERO);
+        let mut singles = self.singles.get(cell).map_or(Rgb::ZERO, |[_, now]| *now);
+        for number in first..first + count {
+            let sample = next(self);
+            let squares = sample * sample;
+            partial.sum += sample;
+            if halves && number < self.evidence_until[cell] {
+                self.evidence[cell].0 += sample;
+                self.evidence[cell].1 += squares;
+            }
+            singles += squares;
+            unfinished += sample;
+            of_batch += 1;
+            if of_batch == batch {
+                of_batch = 0;
+                partial.squares += unfinished * unfinished;
+                unfinished = Rgb::ZERO;
+            }
+            keep_largest(&mut largest, sample);
+            if self.quarters.are_kept() {
+                self.quarters.add(cell, sample, number / batch, halves);
+            }
+            of_block += 1;
+            if of_block == block {
+                of_block = 0;
+                self.total[cell].add(&std::mem::take(&mut partial));
+                if let Some([whole, _]) = self.singles.get_mut(cell) {
+                    *whole += std::mem::take(&mut singles);
+                }
+                if let Some([whole, now]) = self.taken.get_mut(cell) {
                     *whole += std::mem::take(now);
                 }
+                if self.quarters.are_kept() {
+                    self.quarters.end_block(cell);
+                }
             }
-            if self.quarters.are_kept() {
-                self.quarters.end_block(cell);
-            }
+        }
+        self.counts[cell] = first + count;
+        (self.partial[cell], self.largest[cell]) = (partial, largest);
+        if let (Some(to), Some([_, now])) = (self.unfinished.get_mut(cell), self.singles.get_mut(cell)) {
+            (*to, *now) = (unfinished, singles);
         }
     }
 
