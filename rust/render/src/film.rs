@@ -476,37 +476,6 @@ mod tests {
     }
 
     #[test]
-    fn runs_of_samples_add_as_each_does() {
-        for (batch, halves, clamp, apart) in
-            [(1, false, None, false), (8, false, None, true), (32, false, Some(0.9), false), (4, true, Some(0.9), true)]
-        {
-            let film = || Film::new(2, 1, 2, batch, halves, clamp).kept_apart(apart);
-            let (mut each, mut runs) = (film(), film());
-            for film in [&mut each, &mut runs] {
-                film.take_evidence(if halves { 20 } else { 0 });
-            }
-            let (mut one, mut other) = (each.extend_to(1).to_vec(), runs.extend_to(1).to_vec());
-            let mut number = 0;
-            for length in [1, 3, 12, 40, 0, 7, 33] {
-                for cell in 0..2 {
-                    (0..length).for_each(|i| one[0].add(cell, sample(cell as u32, number + i), 0.5));
-                    let mut next = number;
-                    other[0].add_run(cell, length, |tile| {
-                        next += 1;
-                        tile.weighted(cell, sample(cell as u32, next - 1), 0.5)
-                    });
-                }
-                number += length;
-            }
-            assert!(one == other, "batches of {batch}");
-            if clamp.is_none() {
-                let sum: f64 = (0..number).map(|n| 0.5 * sample(0, n)[1]).sum();
-                assert!((one[0].cell(0).sum[1] / sum - 1.0).abs() < 1e-12);
-            }
-        }
-    }
-
-    #[test]
     fn an_unfinished_batch_counts_for_the_mean_and_shares_the_spread_of_the_others() {
         let mut film = film(1, 1, 16, 8);
         expose(&mut film, 0, 21);

@@ -405,3 +405,44 @@ fn keep_largest(largest: &mut Rgb, sample: Rgb) {
         *largest = sample;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raywright_base::sampling::Sampler;
+
+    /// A skewed value that needs all its bits.
+    fn sample(cell: usize, number: u32) -> Rgb {
+        let mut sampler = Sampler::new(9, cell as u32, number);
+        Rgb::new(sampler.one(0), sampler.one(1).powi(5), 1e-3 / sampler.two(2)[0])
+    }
+
+    #[test]
+    fn runs_of_samples_add_as_each_does() {
+        for (batch, halves, clamp, apart) in
+            [(1, false, None, false), (8, false, None, true), (32, false, Some(0.9), false), (4, true, Some(0.9), true)]
+        {
+            let tile = FilmTile::new([0, 0], [2, 1], batch, halves, clamp);
+            let mut each = if apart { tile.kept_apart() } else { tile };
+            if halves {
+                each.take_evidence(20);
+            }
+            let (mut runs, mut number) = (each.clone(), 0);
+            for length in [1, 3, 12, 40, 0, 7, 33] {
+                for cell in 0..2 {
+                    let mut numbers = number..number + length;
+                    numbers.clone().for_each(|number| each.add(cell, sample(cell, number), 0.5));
+                    runs.add_run(cell, length, |tile| {
+                        tile.weighted(cell, sample(cell, numbers.next().expect("as many")), 0.5)
+                    });
+                }
+                number += length;
+            }
+            assert!(each == runs, "batches of {batch}");
+            if clamp.is_none() {
+                let sum: f64 = (0..number).map(|number| 0.5 * sample(0, number)[1]).sum();
+                assert!((runs.cell(0).sum[1] / sum - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+}

@@ -187,7 +187,7 @@ fn accept<const ANY: bool>(index: u32, i: usize, (t, error, off): (f32, f32, f32
         best.near[i] = choose(is_hit, near, best.near[i]);
         best.far[i] = choose(is_hit, far, best.far[i]);
         // Numbers of shapes increase, and NONE is less than all as a signed number. A selection would become a masked
-        // store, which takes as long as the rest on processors of AMD.
+        // store, which takes processors of AMD twelve cycles.
         let hit = (index | !is_hit).cast_signed();
         best.shape[i] = hit.max(best.shape[i].cast_signed()).cast_unsigned();
     }

@@ -9,7 +9,7 @@ use crate::geometry::SurfaceBlock;
 use crate::textures::TexturePoint;
 use crate::{Geometry, RayOrigin};
 use raywright_base::math::single::{cosine_hemisphere, to_world};
-use raywright_base::math::{LANES, PathRays, Ray, SingleLanes, Vec3, VectorLanes};
+use raywright_base::math::{DVec3, LANES, PathRays, Ray, SingleLanes, Vec3, VectorLanes};
 use raywright_base::simd::{Level, loops};
 use raywright_optics::Rgb;
 use raywright_optics::spectra::Waves;
@@ -71,20 +71,23 @@ pub struct ReceiverBlock<'a> {
 }
 
 impl ReceiverBlock<'_> {
-    /// The receiver of a lane.
-    fn get(&self, lane: usize) -> LightSampleContext {
-        let (normal, waves) = (self.normal.get(lane), self.waves[lane]);
-        let place = if normal == Vec3::ZERO { &self.surfaces.position } else { &self.surfaces.origin };
-        LightSampleContext { position: place.get(lane), normal: normal.as_dvec3(), waves }
+    /// Where a lane asks for light.
+    fn place(&self, lane: usize) -> DVec3 {
+        let is_free = self.normal.get(lane) == Vec3::ZERO;
+        if is_free { self.surfaces.position.get(lane) } else { self.surfaces.origin.get(lane) }
     }
 
-    /// Where light is asked for.
-    fn positions(&self) -> VectorLanes {
-        let mut positions = self.surfaces.origin;
-        for lane in (0..LANES).filter(|&lane| self.normal.get(lane) == Vec3::ZERO) {
-            positions.set(lane, self.surfaces.position.get(lane));
-        }
-        positions
+    /// The receiver of a lane.
+    fn get(&self, lane: usize) -> LightSampleContext {
+        let normal = self.normal.get(lane).as_dvec3();
+        LightSampleContext { position: self.place(lane), normal, waves: self.waves[lane] }
+    }
+
+    /// Where all lanes ask for light.
+    fn places(&self) -> VectorLanes {
+        let mut places = VectorLanes::ZERO;
+        (0..LANES).for_each(|lane| places.set(lane, self.place(lane)));
+        places
     }
 }
 
@@ -168,7 +171,7 @@ impl Lights {
                 draw_lamps(level, surfaces, &lamps, u, lights);
                 return self.shine(geometry, receivers, !0, lights);
             }
-            let chosen = choices.sample_lanes(&receivers.positions(), normal, choice);
+            let chosen = choices.sample_lanes(&receivers.places(), normal, choice);
             return self.draw_chosen(level, geometry, receivers, &chosen, u, lights);
         }
         let sky = self.constant_sky();
